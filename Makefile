@@ -1,0 +1,40 @@
+# The commands of README.md. Everything real lives in CMake; this file installs what is missing and calls it.
+BUILD ?= build
+JOBS  ?= $(shell nproc)
+SCENE ?= scenes/snow_cube.toml
+
+.PHONY: all demo test build sanitize bench check format tidy dependencies clean
+
+all: build
+
+demo: build ## run the main job: mesh -> snow -> frames, pictures and a film
+	$(BUILD)/firn run $(SCENE) --force
+
+test: build ## build everything and pass the tests
+	cmake --build $(BUILD) --parallel $(JOBS) --target firn_tests
+	ctest --test-dir $(BUILD) --output-on-failure --no-tests=error --parallel $(JOBS)
+
+build: dependencies ## configure and build the library and the command line tool
+	cmake --preset release -B $(BUILD)
+	cmake --build $(BUILD) --parallel $(JOBS)
+
+sanitize: dependencies ## the tests under AddressSanitizer and UndefinedBehaviorSanitizer, on two SIMD targets
+	cmake --preset sanitize -B $(BUILD)-sanitize
+	cmake --build $(BUILD)-sanitize --parallel $(JOBS) --target firn_tests
+	FIRN_SIMD=baseline ctest --test-dir $(BUILD)-sanitize --output-on-failure --no-tests=error --parallel $(JOBS) -L sanitize
+	FIRN_SIMD=avx2 ctest --test-dir $(BUILD)-sanitize --output-on-failure --no-tests=error --parallel $(JOBS) -L sanitize
+
+bench: build ## particle-steps per second, bytes per particle and the time of each verb of the step
+	$(BUILD)/firn bench
+
+format: ## rewrite the sources in the project's layout
+	git ls-files 'src/*.h' 'src/*.cc' 'tests/*.h' 'tests/*.cc' | xargs clang-format -i
+
+tidy: build ## naming and bug-prone patterns
+	git ls-files 'src/*.cc' | xargs -P $(JOBS) -n 4 clang-tidy --quiet -p $(BUILD)
+
+dependencies: ## install the Debian packages that are missing
+	@tools/install_dependencies.sh
+
+clean:
+	rm -rf $(BUILD) $(BUILD)-sanitize

@@ -1,0 +1,15 @@
+# Libraries from the system's packages; docs/dependencies.md says why each is here. Nothing is downloaded.
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(TBB REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(PNG REQUIRED)
+find_package(embree 3 REQUIRED)
+find_package(GTest REQUIRED)
+pkg_check_modules(highway REQUIRED IMPORTED_TARGET libhwy)
+pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
+pkg_check_modules(cli11 REQUIRED IMPORTED_TARGET CLI11)
+pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
+# `hdf5` alone silently becomes the MPI build where both are installed.
+pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial)

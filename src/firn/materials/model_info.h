@@ -1,0 +1,42 @@
+#pragma once
+
+#include <firn/core/parameter.h>
+
+#include <span>
+#include <string_view>
+
+namespace firn {
+
+/// What the rest of Firn knows about a constitutive model: derived from the type list in registry.cc.
+struct ModelInfo {
+  std::string_view name;     ///< scene value, for example "neo_hookean"
+  std::string_view summary;  ///< one sentence
+  std::string_view source;   ///< paper and equation
+  std::span<const Parameter> parameters;
+};
+
+/// Initial mass density, kg/m^3: common to all models.
+extern const Parameter kDensity;
+
+std::span<const ModelInfo> all_models();
+/// Null if there is none.
+const ModelInfo* find_model(std::string_view name);
+
+/// A named substance: a model with numbers.
+struct Preset {
+  struct Value {
+    std::string_view parameter;
+    double value;
+  };
+  std::string_view name;     ///< for example "snow"
+  std::string_view model;
+  std::string_view summary;  ///< one sentence with the source of the numbers
+  double density;            ///< kg/m^3
+  std::span<const Value> values;
+};
+
+std::span<const Preset> all_presets();
+/// Null if there is none.
+const Preset* find_preset(std::string_view name);
+
+}  // namespace firn
