@@ -13,10 +13,10 @@ using AngularVelocity = std::conditional_t<dim == 3, Vec3d, double>;
 /// A rigid frame that moves at constant linear and angular velocity about its own origin.
 template <int dim>
 struct RigidMotion {
-  Vec<double, dim> origin = {};                          ///< world position of the frame's origin at t = 0, m
-  Mat<double, dim> rotation = identity<double, dim>();   ///< world from frame at t = 0
-  Vec<double, dim> velocity = {};                        ///< m/s
-  AngularVelocity<dim> angular_velocity = {};            ///< rad/s
+  Vec<double, dim> origin = {};                         ///< world position of the frame's origin at t = 0, m
+  Mat<double, dim> rotation = identity<double, dim>();  ///< world from frame at t = 0
+  Vec<double, dim> velocity = {};                       ///< m/s
+  AngularVelocity<dim> angular_velocity = {};           ///< rad/s
 
   bool is_static() const;
   Vec<double, dim> origin_at(double t) const;
