@@ -38,8 +38,12 @@ void svd_batch(const Real* A, size_t count, Real* U, Real* sigma, Real* V) {
 
 void svd_float_2(const float* A, size_t count, float* U, float* s, float* V) { svd_batch<float, 2>(A, count, U, s, V); }
 void svd_float_3(const float* A, size_t count, float* U, float* s, float* V) { svd_batch<float, 3>(A, count, U, s, V); }
-void svd_double_2(const double* A, size_t count, double* U, double* s, double* V) { svd_batch<double, 2>(A, count, U, s, V); }
-void svd_double_3(const double* A, size_t count, double* U, double* s, double* V) { svd_batch<double, 3>(A, count, U, s, V); }
+void svd_double_2(const double* A, size_t count, double* U, double* s, double* V) {
+  svd_batch<double, 2>(A, count, U, s, V);
+}
+void svd_double_3(const double* A, size_t count, double* U, double* s, double* V) {
+  svd_batch<double, 3>(A, count, U, s, V);
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace firn
@@ -88,8 +92,8 @@ long double determinant_of(const Real* Q, int n) {
   if (n == 2) return (long double)Q[0] * Q[3] - (long double)Q[1] * Q[2];
   long double d = 0;
   for (int i = 0; i < 3; ++i) {
-    d += (long double)Q[i] * ((long double)Q[3 + (i + 1) % 3] * Q[6 + (i + 2) % 3] -
-                              (long double)Q[3 + (i + 2) % 3] * Q[6 + (i + 1) % 3]);
+    d += (long double)Q[i] *
+         ((long double)Q[3 + (i + 1) % 3] * Q[6 + (i + 2) % 3] - (long double)Q[3 + (i + 2) % 3] * Q[6 + (i + 1) % 3]);
   }
   return d;
 }
@@ -134,10 +138,11 @@ std::vector<Real> hard_cases(int n) {
   const Real eps = std::numeric_limits<Real>::epsilon();
   const Real huge = std::sqrt(std::numeric_limits<Real>::max()) * 100, tiny = 1 / huge;
   const Real denormal = std::numeric_limits<Real>::denorm_min() * 5;
-  std::vector<std::vector<Real>> diagonals = {{1, 1, 1},     {-1, -1, -1},   {0, 0, 0},  {1, 0, 0},          {1, 1, 0},
-                                              {2, 1, 1},     {2, 2, 1},      {2, 2, -1}, {1, 1 + eps, 1},    {1, 1 - eps, 1 + 2 * eps},
-                                              {huge, 1, 1},  {huge, huge, huge}, {tiny, tiny, tiny}, {1, tiny, tiny}, {denormal, denormal, 0},
-                                              {1, -1, 1e-3f}, {1e-3f, 1, 10}, {0, 0, 3}};
+  std::vector<std::vector<Real>> diagonals = {
+      {1, 1, 1},      {-1, -1, -1},       {0, 0, 0},          {1, 0, 0},       {1, 1, 0},
+      {2, 1, 1},      {2, 2, 1},          {2, 2, -1},         {1, 1 + eps, 1}, {1, 1 - eps, 1 + 2 * eps},
+      {huge, 1, 1},   {huge, huge, huge}, {tiny, tiny, tiny}, {1, tiny, tiny}, {denormal, denormal, 0},
+      {1, -1, 1e-3f}, {1e-3f, 1, 10},     {0, 0, 3}};
   std::vector<Real> A;
   for (const auto& d : diagonals) {
     for (int i = 0; i < n; ++i) {
@@ -145,13 +150,11 @@ std::vector<Real> hard_cases(int n) {
     }
   }
   const std::vector<std::vector<Real>> full = {
-      {1, 2, 3, 2, 4, 6, 3, 6, 9},      // rank 1
-      {1, 2, 3, 4, 5, 6, 7, 8, 9},      // rank 2
-      {0, 1, 0, 1, 0, 0, 0, 0, 1},      // reflection
-      {0, 0, 1, 1, 0, 0, 0, 1, 0},      // permutation, a rotation
-      {1, 1, 1, 1, 1, 1, 1, 1, 1 + eps},
-      {0, 0, 0, 0, 0, 0, 0, 0, 1},
-      {1, 1e-4f, 0, 0, 1e-4f, 1e-7f, 0, 0, 1e-7f},
+      {1, 2, 3, 2, 4, 6, 3, 6, 9},  // rank 1
+      {1, 2, 3, 4, 5, 6, 7, 8, 9},  // rank 2
+      {0, 1, 0, 1, 0, 0, 0, 0, 1},  // reflection
+      {0, 0, 1, 1, 0, 0, 0, 1, 0},  // permutation, a rotation
+      {1, 1, 1, 1, 1, 1, 1, 1, 1 + eps}, {0, 0, 0, 0, 0, 0, 0, 0, 1}, {1, 1e-4f, 0, 0, 1e-4f, 1e-7f, 0, 0, 1e-7f},
   };
   for (const auto& a : full) {
     for (int i = 0; i < n; ++i) {

@@ -172,8 +172,8 @@ HWY_INLINE T scalar_inverse_power_of_two(T a) {
 HWY_INLINE float inverse_power_of_two(float a) { return scalar_inverse_power_of_two(a); }
 HWY_INLINE double inverse_power_of_two(double a) { return scalar_inverse_power_of_two(a); }
 
-// Memory. Columns are padded, so that a full vector may be read where at least one element is valid; a full vector may be
-// written only where all of it belongs to the writer, because the next elements may be another thread's.
+// Memory. Columns are padded, so that a full vector may be read where at least one element is valid; a full vector may
+// be written only where all of it belongs to the writer, because the next elements may be another thread's.
 
 template <class T>
 HWY_INLINE Lanes<T> load_lanes(const T* HWY_RESTRICT from) {

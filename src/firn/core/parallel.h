@@ -13,14 +13,12 @@ namespace firn {
 template <class Body>
 void parallel_chunks(std::size_t count, std::size_t grain, const Body& body) {
   const std::size_t chunks = (count + grain - 1) / grain;
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, chunks, 1),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t chunk = range.begin(); chunk < range.end(); ++chunk) {
-          const std::size_t begin = chunk * grain;
-          body(begin, begin + grain < count ? begin + grain : count);
-        }
-      });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks, 1), [&](const tbb::blocked_range<std::size_t>& range) {
+    for (std::size_t chunk = range.begin(); chunk < range.end(); ++chunk) {
+      const std::size_t begin = chunk * grain;
+      body(begin, begin + grain < count ? begin + grain : count);
+    }
+  });
 }
 
 /// body(i) for each i in [0, count).

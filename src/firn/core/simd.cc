@@ -52,8 +52,8 @@ void select(std::string_view name) {
     selected_name() = name;
     return;
   }
-  throw Error(ErrorKind::usage, fmt::format("SIMD target \"{}\" is not available; this processor and build have: {}", name,
-                                            fmt::join(available_simd_targets(), ", ")));
+  throw Error(ErrorKind::usage, fmt::format("SIMD target \"{}\" is not available; this processor and build have: {}",
+                                            name, fmt::join(available_simd_targets(), ", ")));
 }
 
 void obey_environment_once() {

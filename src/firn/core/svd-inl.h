@@ -17,9 +17,9 @@ HWY_BEFORE_NAMESPACE();
 namespace firn {
 namespace HWY_NAMESPACE {
 
-/// A = U diag(sigma) V^T with rotations U and V (det = +1) and sigma[0] >= sigma[1] (>= |sigma[2]|). A reflection in A is
-/// carried by the sign of the smallest singular value, which is therefore the only one that can be negative
-/// (Irving, Teran, Fedkiw 2004).
+/// A = U diag(sigma) V^T with rotations U and V (det = +1) and sigma[0] >= sigma[1] (>= |sigma[2]|). A reflection in A
+/// is carried by the sign of the smallest singular value, which is therefore the only one that can be negative (Irving,
+/// Teran, Fedkiw 2004).
 template <class T, int n>
 struct Svd {
   Mat<T, n> U;
@@ -43,8 +43,8 @@ HWY_INLINE void orthogonalize_columns(Mat<T, n>& B, Mat<T, n>& V) {
     beta = mul_add(B(i, q), B(i, q), beta);
     gamma = mul_add(B(i, p), B(i, q), gamma);
   }
-  // tan of the smaller angle that zeroes gamma: 2 gamma / (delta +- sqrt(delta^2 + 4 gamma^2)), free of cancellation and of
-  // 0/0 where the columns are orthogonal already.
+  // tan of the smaller angle that zeroes gamma: 2 gamma / (delta +- sqrt(delta^2 + 4 gamma^2)), free of cancellation
+  // and of 0/0 where the columns are orthogonal already.
   const T delta = beta - alpha;
   const T twice_gamma = gamma + gamma;
   const T root = sqrt(mul_add(delta, delta, twice_gamma * twice_gamma));
@@ -75,8 +75,8 @@ HWY_INLINE void jacobi_sweep(Mat<T, 3>& B, Mat<T, 3>& V) {
   orthogonalize_columns<1, 2>(B, V);
 }
 
-/// Sweeps until the columns are orthogonal to round-off: measured over 10^7 random, graded and near-repeated matrices, plus
-/// one sweep of margin. Convergence is quadratic, so double needs one sweep more than single.
+/// Sweeps until the columns are orthogonal to round-off: measured over 10^7 random, graded and near-repeated matrices,
+/// plus one sweep of margin. Convergence is quadratic, so double needs one sweep more than single.
 template <class T, int n>
 constexpr int jacobi_sweeps() {
   if (n == 2) return 2;
@@ -140,8 +140,8 @@ HWY_INLINE void order_pair(Svd<T, n>& svd) {
   }
 }
 
-/// Singular value decomposition. Any finite input, also zero, singular, huge and tiny: |U S V^T - A| <= 8 eps |A|. NaN in,
-/// NaN out.
+/// Singular value decomposition. Any finite input, also zero, singular, huge and tiny: |U S V^T - A| <= 8 eps |A|. NaN
+/// in, NaN out.
 ///
 /// V comes from one-sided Jacobi on the columns of A and U from Givens rotations of A V, which stays orthogonal for any
 /// rank. Jacobi on A^T A (McAdams et al. 2011) is cheaper but squares the condition number.
@@ -184,8 +184,7 @@ HWY_INLINE Mat<T, n> compose(const Mat<T, n>& U, const Vec<T, n>& d, const Mat<T
 template <class T, int n>
 HWY_INLINE Polar<T, n> polar(const Mat<T, n>& A) {
   const Svd<T, n> decomposition = svd(A);
-  return {decomposition.U * transpose(decomposition.V),
-          compose(decomposition.V, decomposition.sigma, decomposition.V)};
+  return {decomposition.U * transpose(decomposition.V), compose(decomposition.V, decomposition.sigma, decomposition.V)};
 }
 
 }  // namespace HWY_NAMESPACE

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <firn/core/parameter.h>
+#include <firn/materials/history_column.h>
 
 #include <span>
 #include <string_view>
@@ -13,6 +14,7 @@ struct ModelInfo {
   std::string_view summary;  ///< one sentence
   std::string_view source;   ///< paper and equation
   std::span<const Parameter> parameters;
+  std::span<const HistoryColumn> history;
 };
 
 /// Initial mass density, kg/m^3: common to all models.
@@ -21,6 +23,8 @@ extern const Parameter kDensity;
 std::span<const ModelInfo> all_models();
 /// Null if there is none.
 const ModelInfo* find_model(std::string_view name);
+/// Place in all_models(); -1 if there is none.
+int model_number(std::string_view name);
 
 /// A named substance: a model with numbers.
 struct Preset {
@@ -28,7 +32,7 @@ struct Preset {
     std::string_view parameter;
     double value;
   };
-  std::string_view name;     ///< for example "snow"
+  std::string_view name;  ///< for example "snow"
   std::string_view model;
   std::string_view summary;  ///< one sentence with the source of the numbers
   double density;            ///< kg/m^3

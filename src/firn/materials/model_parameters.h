@@ -1,0 +1,49 @@
+#pragma once
+
+#include <firn/core/parameter.h>
+
+#include <vector>
+
+namespace firn {
+
+/// Values for one use of a model: in the order of its ModelInfo::parameters.
+struct ModelParameters {
+  std::vector<double> values;
+  double density = 1000;  ///< kg/m^3, of the undeformed material
+};
+
+// Parameters that several models share.
+
+inline constexpr Parameter kYoungsModulus = {
+    .name = "youngs_modulus",
+    .unit = "Pa",
+    .default_value = 1e5,
+    .minimum = 1e-3,
+    .maximum = 1e13,
+    .help = "Stiffness: stress per strain in uniaxial tension.",
+    .hint = "snow is near 1e5, rubber 1e6 to 1e7, steel 2e11",
+};
+
+inline constexpr Parameter kPoissonRatio = {
+    .name = "poisson_ratio",
+    .unit = "",
+    .default_value = 0.3,
+    .minimum = -1,
+    .maximum = 0.5,
+    .minimum_allowed = false,
+    .maximum_allowed = false,
+    .help = "Lateral contraction per extension: 0 for cork, towards 0.5 for incompressible material.",
+    .hint = "0.5 is incompressible and would need an infinite bulk modulus: use at most 0.49, or a fluid",
+};
+
+/// Lame's first parameter, Pa.
+constexpr double lame_lambda(double youngs_modulus, double poisson_ratio) {
+  return youngs_modulus * poisson_ratio / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio));
+}
+
+/// Lame's second parameter, the shear modulus, Pa.
+constexpr double lame_mu(double youngs_modulus, double poisson_ratio) {
+  return youngs_modulus / (2 * (1 + poisson_ratio));
+}
+
+}  // namespace firn

@@ -1,0 +1,30 @@
+// The list of constitutive models. Adding a model is one file, one line here, one test: scene keys, help, checks,
+// columns, dispatch and the contract test follow.
+
+#if defined(FIRN_MATERIALS_MODELS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FIRN_MATERIALS_MODELS_INL_H_
+#undef FIRN_MATERIALS_MODELS_INL_H_
+#else
+#define FIRN_MATERIALS_MODELS_INL_H_
+#endif
+
+#include <firn/materials/fixed_corotated-inl.h>
+#include <firn/materials/neo_hookean-inl.h>
+#include <firn/materials/snow-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace firn {
+namespace HWY_NAMESPACE {
+
+template <template <class> class... Models>
+struct ModelList {
+  static constexpr int kCount = sizeof...(Models);
+};
+
+using AllModels = ModelList<FixedCorotated, NeoHookean, Snow>;
+
+}  // namespace HWY_NAMESPACE
+}  // namespace firn
+HWY_AFTER_NAMESPACE();
+
+#endif  // FIRN_MATERIALS_MODELS_INL_H_

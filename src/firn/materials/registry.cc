@@ -1,0 +1,76 @@
+#include <firn/materials/model_info.h>
+#include <firn/materials/models-inl.h>
+#include <firn/materials/update_stress.h>
+
+#include <array>
+
+namespace firn {
+
+const Parameter kDensity = {
+    .name = "density",
+    .unit = "kg/m^3",
+    .default_value = 1000,
+    .minimum = 0,
+    .maximum = 1e6,
+    .minimum_allowed = false,
+    .help = "Mass per volume of the undeformed material.",
+    .hint = "fresh snow is near 100, packed snow 400, water 1000, steel 7850",
+};
+
+namespace {
+
+using namespace HWY_NAMESPACE;
+
+template <template <class> class... Models>
+constexpr auto infos_of(ModelList<Models...>) {
+  static_assert(((Models<double>::kHistory.size() <= kMaxHistoryColumns) && ...));
+  return std::array{ModelInfo{
+      .name = Models<double>::kName,
+      .summary = Models<double>::kSummary,
+      .source = Models<double>::kSource,
+      .parameters = Models<double>::kParameters,
+      .history = Models<double>::kHistory,
+  }...};
+}
+
+constexpr auto kInfos = infos_of(AllModels());
+
+template <int dim, template <class> class Model>
+double energy_of(const ModelParameters& parameters, const double* F, const double* history) {
+  HWY_NAMESPACE::Mat<double, dim> matrix;
+  for (int e = 0; e < dim * dim; ++e) matrix.e[e] = F[e];
+  return Model<double>(parameters).energy(matrix, history);
+}
+
+template <int dim, template <class> class... Models>
+double energy_of(int model, ModelList<Models...>, const ModelParameters& parameters, const double* F,
+                 const double* history) {
+  using Function = double (*)(const ModelParameters&, const double*, const double*);
+  static constexpr std::array<Function, sizeof...(Models)> kFunctions = {&energy_of<dim, Models>...};
+  return kFunctions[static_cast<std::size_t>(model)](parameters, F, history);
+}
+
+}  // namespace
+
+std::span<const ModelInfo> all_models() { return kInfos; }
+
+const ModelInfo* find_model(std::string_view name) {
+  for (const ModelInfo& info : kInfos) {
+    if (info.name == name) return &info;
+  }
+  return nullptr;
+}
+
+int model_number(std::string_view name) {
+  const ModelInfo* info = find_model(name);
+  return info == nullptr ? -1 : static_cast<int>(info - kInfos.data());
+}
+
+template <int dim>
+double energy_density(int model, const ModelParameters& parameters, const double* F, const double* history) {
+  return energy_of<dim>(model, AllModels(), parameters, F, history);
+}
+template double energy_density<2>(int, const ModelParameters&, const double*, const double*);
+template double energy_density<3>(int, const ModelParameters&, const double*, const double*);
+
+}  // namespace firn

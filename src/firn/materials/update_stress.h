@@ -1,0 +1,50 @@
+#pragma once
+
+#include <firn/materials/history_column.h>
+#include <firn/materials/model_parameters.h>
+
+#include <cstddef>
+#include <limits>
+
+namespace firn {
+
+/// Number of stored components of the Kirchhoff stress: xx yy zz xy xz yz in 3D, xx yy zz xy in 2D.
+template <int dim>
+inline constexpr int kStressComponents = dim == 3 ? 6 : 4;
+
+/// Columns that a material law reads and writes; one array per component, element p is particle p. Padded so that a
+/// whole SIMD vector may be read from the last element on.
+template <class Real, int dim>
+struct MaterialColumns {
+  const Real* grad_v[dim * dim];         ///< 1/s, row-major: row is the velocity's component
+  Real* strain[dim * dim];               ///< deformation gradient (elastic part, for plastic models), row-major
+  Real* history[kMaxHistoryColumns];     ///< as the model declares
+  Real* stress[kStressComponents<dim>];  ///< Kirchhoff, Pa
+};
+
+struct StressReport {
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  double wave_speed = 0;       ///< fastest elastic wave, m/s
+  std::size_t failed = kNone;  ///< first particle whose state is not finite or inverted beyond what the model bears
+};
+
+/// Combines reports of consecutive ranges.
+inline StressReport merge(const StressReport& a, const StressReport& b) {
+  return {a.wave_speed > b.wave_speed ? a.wave_speed : b.wave_speed, a.failed < b.failed ? a.failed : b.failed};
+}
+
+/// Moves particles [begin, end) forward by dt: strain update, return map, Kirchhoff stress. With dt = 0 it computes the
+/// stress of the present strain.
+template <class Real, int dim>
+using UpdateStress = StressReport (*)(const ModelParameters&, const MaterialColumns<Real, dim>&, std::size_t begin,
+                                      std::size_t end, Real dt);
+
+/// The function of model number `model` (its place in all_models()) for the selected SIMD target.
+template <class Real, int dim>
+UpdateStress<Real, dim> update_stress_function(int model);
+
+/// Energy density psi, J/m^3 of undeformed volume, of model number `model`. F is row-major.
+template <int dim>
+double energy_density(int model, const ModelParameters&, const double* F, const double* history);
+
+}  // namespace firn
