@@ -1,0 +1,175 @@
+#include <firn/core/log.h>
+#include <firn/materials/model_info.h>
+#include <firn/scene/nearest.h>
+#include <firn/scene/scene_draft.h>
+#include <firn/scene/value_text.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace firn {
+namespace {
+
+constexpr double kEarthGravity = 9.81;  // m/s^2
+constexpr int kBlockNodes = 4;          // per axis; periods are whole blocks
+
+Vec3d up_direction(const Scene& scene) { return scene.up == Scene::Up::y ? Vec3d{{0, 1, 0}} : Vec3d{{0, 0, 1}}; }
+
+void complete_root(SceneDraft& draft) {
+  Scene& scene = draft.scene;
+  if (scene.dimension == 2 && scene.up == Scene::Up::z) draft.fail("", 0, "up", "up must be \"y\" in a 2D scene");
+  if (!draft.has("", 0, "gravity")) scene.gravity[scene.up == Scene::Up::y ? 1 : 2] = -kEarthGravity;
+  if (norm(scene.gravity) > 100 * kEarthGravity) {
+    log_warning(fmt::format("{}: gravity is {} m/s^2, {:.0f} times the Earth's; lengths are in metres",
+                            draft.document.name, number_text(norm(scene.gravity)),
+                            norm(scene.gravity) / kEarthGravity));
+  }
+  if (!draft.has("resolution", 0, "particles_per_cell")) {
+    scene.resolution.particles_per_cell = scene.dimension == 3 ? 8 : 4;
+  }
+  if (!draft.has("output", 0, "folder"))
+    scene.output.folder = (std::filesystem::path("out") / scene.file.stem()).string();
+}
+
+void complete_method(const SceneDraft& draft) {
+  const MethodSettings& method = draft.scene.method;
+  if (method.form == MethodSettings::Form::mls && method.kernel == MethodSettings::Kernel::linear) {
+    draft.fail("method", 0, "kernel",
+               "kernel \"linear\" does not work with form \"mls\", whose matrix D vanishes at grid nodes; "
+               "use form = \"gradient\" or kernel = \"quadratic\"");
+  }
+  const std::optional<double> cell = draft.scene.resolution.cell_size;
+  if (!cell) return;
+  const double block = kBlockNodes * *cell;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double blocks = method.periodic[axis] / block;
+    if (std::abs(blocks - std::round(blocks)) > 1e-9 * std::max(1.0, blocks)) {
+      draft.fail("method", 0, "periodic",
+                 fmt::format("periodic must be a multiple of {} cells, {} m, on each axis, got {}", kBlockNodes,
+                             number_text(block), number_text(method.periodic[axis])));
+    }
+  }
+}
+
+void complete_limits(const SceneDraft& draft) {
+  if (const auto& box = draft.scene.limits.box) {
+    for (int axis = 0; axis < draft.scene.dimension; ++axis) {
+      if (box->lower[axis] < box->upper[axis]) continue;
+      draft.fail("limits", 0, "box",
+                 fmt::format("box must have its lowest corner first; on axis {} got {} and {}", "xyz"[axis],
+                             number_text(box->lower[axis]), number_text(box->upper[axis])));
+    }
+  }
+}
+
+void complete_materials(const SceneDraft& draft) {
+  const Scene& scene = draft.scene;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const MaterialSettings& material = scene.materials[i];
+    const Preset* preset = find_preset(material.preset);
+    if (preset && preset->model != material.model) {
+      draft.fail("material", i, "model",
+                 fmt::format("preset {} has the model {}, got {}; leave out preset or model",
+                             in_quotes(material.preset), in_quotes(preset->model), in_quotes(material.model)));
+    }
+  }
+}
+
+template <class Settings>
+void complete_names(const SceneDraft& draft, std::string_view section, std::vector<Settings>& objects) {
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (objects[i].name.empty()) objects[i].name = fmt::format("{}{}", section, i);
+    for (std::size_t j = 0; j < i; ++j) {
+      if (objects[j].name != objects[i].name) continue;
+      draft.fail(section, i, "name", fmt::format("an earlier {} has the same name; names must differ", section));
+    }
+  }
+}
+
+void check_file(const SceneDraft& draft, std::size_t index, std::string_view key, const std::string& file) {
+  const std::filesystem::path path = draft.scene.locate(file);
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored)) return;
+  draft.fail("body", index, key,
+             fmt::format("{} {} is not a file (looked for {}); paths start at the scene file's folder", key,
+                         in_quotes(file), std::filesystem::absolute(path, ignored).lexically_normal().string()),
+             ErrorKind::files);
+}
+
+void check_body(const SceneDraft& draft, std::size_t i) {
+  const Scene& scene = draft.scene;
+  const BodySettings& body = scene.bodies[i];
+  const bool flat = scene.dimension == 2;
+  if (flat && !body.mesh.empty()) {
+    draft.fail("body", i, "mesh", "a mesh needs a 3D scene; in 2D give polygon or shape");
+  }
+  if (!flat && !body.polygon.empty())
+    draft.fail("body", i, "polygon", "a polygon needs dimension = 2; in 3D give mesh");
+  if (flat && body.shape == BodySettings::Shape::sphere) {
+    draft.fail("body", i, "shape", "shape \"sphere\" needs a 3D scene; in 2D use \"disk\"");
+  }
+  if (!flat && body.shape == BodySettings::Shape::disk) {
+    draft.fail("body", i, "shape", "shape \"disk\" needs dimension = 2; in 3D use \"sphere\"");
+  }
+  if (!body.mesh.empty()) check_file(draft, i, "mesh", body.mesh);
+  if (!body.polygon.empty()) check_file(draft, i, "polygon", body.polygon);
+  if (!scene.find_material(body.material)) {
+    std::vector<std::string> names;
+    for (const MaterialSettings& material : scene.materials) names.push_back(material.name);
+    draft.fail("body", i, "material",
+               fmt::format("no [material.{}]{}", key_text(body.material), suggestion(body.material, names)));
+  }
+}
+
+void complete_bodies(SceneDraft& draft) {
+  complete_names(draft, "body", draft.scene.bodies);
+  for (std::size_t i = 0; i < draft.scene.bodies.size(); ++i) check_body(draft, i);
+}
+
+void complete_colliders(SceneDraft& draft) {
+  Scene& scene = draft.scene;
+  complete_names(draft, "collider", scene.colliders);
+  for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
+    ColliderSettings& collider = scene.colliders[i];
+    if (collider.shape != ColliderSettings::Shape::half_space) continue;
+    if (!draft.has("collider", i, "normal")) collider.normal = up_direction(scene);
+    if (norm(collider.normal) == 0) draft.fail("collider", i, "normal", "normal must not be zero");
+    // A unit vector stays as it is, so that a resolved scene read back is the same scene.
+    if (std::abs(norm(collider.normal) - 1) > 1e-15) collider.normal = normalized(collider.normal);
+  }
+}
+
+void complete_pictures(SceneDraft& draft) {
+  CameraSettings& camera = draft.scene.camera;
+  if (!draft.has("camera", 0, "up")) camera.up = up_direction(draft.scene);
+  if (norm(camera.up) == 0) draft.fail("camera", 0, "up", "up must not be zero");
+  if (camera.position && camera.target && norm(*camera.position - *camera.target) == 0) {
+    draft.fail("camera", 0, "target", "target must differ from position");
+  }
+  const RenderSettings& render = draft.scene.render;
+  if (render.range && !((*render.range)[0] < (*render.range)[1])) {
+    draft.fail("render", 0, "range",
+               fmt::format("range must have its lower value first, got {} and {}", number_text((*render.range)[0]),
+                           number_text((*render.range)[1])));
+  }
+  for (const auto& [key, pixels] : {std::pair("width", render.width), std::pair("height", render.height)}) {
+    if (render.film && pixels % 2 != 0) {
+      draft.fail("render", 0, key, fmt::format("{} must be even for a film, got {}; or set film = false", key, pixels));
+    }
+  }
+}
+
+}  // namespace
+
+void complete_scene(SceneDraft& draft) {
+  complete_root(draft);
+  complete_method(draft);
+  complete_limits(draft);
+  complete_materials(draft);
+  complete_bodies(draft);
+  complete_colliders(draft);
+  complete_pictures(draft);
+}
+
+}  // namespace firn

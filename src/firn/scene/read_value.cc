@@ -1,0 +1,151 @@
+#include <firn/core/error.h>
+#include <firn/scene/nearest.h>
+#include <firn/scene/read_value.h>
+#include <firn/scene/value_text.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace firn {
+namespace {
+
+constexpr std::string_view kPointHint = "a decimal number is written with a point, such as 1.5";
+
+class ValueReader {
+ public:
+  ValueReader(const Key& key, const Node& node, int dimension) : key_(key), node_(node), dimension_(dimension) {}
+
+  Value read() const {
+    switch (key_.type) {
+      case ValueType::boolean:
+        return get<bool>();
+      case ValueType::text:
+        return get<std::string>();
+      case ValueType::choice:
+        return choice();
+      case ValueType::number:
+        return number(node_);
+      case ValueType::integer:
+        return integer();
+      case ValueType::vector:
+        return padded(list(node_, static_cast<std::size_t>(dimension_)));
+      case ValueType::vector3:
+        return list(node_, 3);
+      case ValueType::interval:
+        return list(node_, 2);
+      case ValueType::rotation:
+        return rotation();
+      case ValueType::box:
+        return box();
+    }
+    wrong_type();
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorKind::usage, fmt::format("{} {}", key_.info.name, what));
+  }
+
+  [[noreturn]] void wrong_type(std::string_view hint = {}) const {
+    if (hint.empty() && looks_like_decimal_comma()) hint = kPointHint;
+    fail(fmt::format("must be {}, got {}{}{}", type_text(key_, dimension_), node_.describe(), hint.empty() ? "" : "; ",
+                     hint));
+  }
+
+  [[noreturn]] void out_of_range(const std::string& given) const {
+    const std::string range = range_text(key_);
+    fail(fmt::format("{}, got {}{}{}", range.empty() ? "must be a finite number" : range, given,
+                     key_.info.hint.empty() ? "" : "; ", key_.info.hint));
+  }
+
+  /// "1,5" as text, or [1,5, 2,5] with twice as many whole numbers as expected.
+  bool looks_like_decimal_comma() const {
+    if (const auto* text = std::get_if<std::string>(&node_.value)) {
+      const auto comma = text->find(',');
+      return comma != text->npos && comma > 0 && comma + 1 < text->size() && std::ranges::all_of(*text, [](char c) {
+               return std::isdigit(static_cast<unsigned char>(c)) || c == ',' || c == '-';
+             });
+    }
+    const Node::Array* array = node_.array();
+    if (!array) return false;
+    const std::size_t expected = key_.type == ValueType::vector ? static_cast<std::size_t>(dimension_) : 3;
+    return array->size() == 2 * expected &&
+           std::ranges::all_of(*array, [](const Node& n) { return std::holds_alternative<std::int64_t>(n.value); });
+  }
+
+  template <class T>
+  T get() const {
+    if (const T* value = std::get_if<T>(&node_.value)) return *value;
+    wrong_type();
+  }
+
+  std::string choice() const {
+    const auto* text = std::get_if<std::string>(&node_.value);
+    if (!text) wrong_type();
+    if (std::ranges::find(key_.choices, *text) != key_.choices.end()) return *text;
+    const std::string nearest = nearest_name(*text, {key_.choices.begin(), key_.choices.end()});
+    fail(fmt::format("must be {}, got {}{}", type_text(key_), in_quotes(*text),
+                     nearest.empty() ? "" : fmt::format("; did you mean {}?", in_quotes(nearest))));
+  }
+
+  double number(const Node& node) const {
+    double value = 0;
+    if (const auto* whole = std::get_if<std::int64_t>(&node.value)) {
+      value = static_cast<double>(*whole);
+    } else if (const auto* real = std::get_if<double>(&node.value)) {
+      value = *real;
+    } else {
+      wrong_type();
+    }
+    if (!in_range(key_.info, value)) out_of_range(number_text(value));
+    return value;
+  }
+
+  std::int64_t integer() const {
+    const double value = number(node_);
+    if (const auto* whole = std::get_if<std::int64_t>(&node_.value)) return *whole;
+    // 1e6 is a real number in TOML, but people mean a count.
+    if (value != std::floor(value) || std::abs(value) > 0x1p53) wrong_type();
+    return static_cast<std::int64_t>(value);
+  }
+
+  std::vector<double> list(const Node& node, std::size_t count) const {
+    const Node::Array* array = node.array();
+    if (!array || array->size() != count) wrong_type();
+    std::vector<double> numbers;
+    for (const Node& element : *array) numbers.push_back(number(element));
+    return numbers;
+  }
+
+  static std::vector<double> padded(std::vector<double> numbers) {
+    numbers.resize(3, 0.0);
+    return numbers;
+  }
+
+  Value rotation() const {
+    if (dimension_ == 2) return std::vector<double>{0, 0, number(node_)};
+    return list(node_, 3);
+  }
+
+  Value box() const {
+    const Node::Array* corners = node_.array();
+    if (!corners || corners->size() != 2) wrong_type();
+    std::vector<double> numbers = padded(list((*corners)[0], static_cast<std::size_t>(dimension_)));
+    const std::vector<double> upper = padded(list((*corners)[1], static_cast<std::size_t>(dimension_)));
+    numbers.insert(numbers.end(), upper.begin(), upper.end());
+    return numbers;
+  }
+
+  const Key& key_;
+  const Node& node_;
+  int dimension_;
+};
+
+}  // namespace
+
+Value read_value(const Key& key, const Node& node, int dimension) { return ValueReader(key, node, dimension).read(); }
+
+}  // namespace firn

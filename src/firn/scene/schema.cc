@@ -1,0 +1,102 @@
+#include <firn/scene/schema.h>
+#include <firn/scene/schema_table.h>
+#include <firn/scene/value_text.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace firn {
+
+const Key* Section::find(std::string_view key) const {
+  const auto found = std::ranges::find_if(keys, [&](const Key& k) { return k.info.name == key; });
+  return found == keys.end() ? nullptr : &*found;
+}
+
+const void* Section::object(const Scene& scene, std::size_t index) const {
+  // `at` serves reading and writing alike; here nothing is changed.
+  return at(const_cast<Scene&>(scene), index);
+}
+
+std::span<const Section> schema() {
+  static const std::vector<Section> table = make_schema();
+  return table;
+}
+
+const Section* find_section(std::string_view name) {
+  const auto found = std::ranges::find_if(schema(), [&](const Section& s) { return s.name == name; });
+  return found == schema().end() ? nullptr : &*found;
+}
+
+std::string key_path(const Section& section, const Key& key) {
+  switch (section.kind) {
+    case SectionKind::root:
+      return std::string(key.info.name);
+    case SectionKind::named:
+      return fmt::format("{}.<name>.{}", section.name, key.info.name);
+    default:
+      return fmt::format("{}.{}", section.name, key.info.name);
+  }
+}
+
+std::optional<Value> default_value(const Section& section, const Key& key) {
+  if (key.required || !key.default_text.empty()) return std::nullopt;
+  Scene scene;
+  if (const std::optional<Value> value = key.get(section.add(scene))) return value;
+  // A material's number that depends on the model has no value before the model is known.
+  if (key.type == ValueType::number) return Value(key.info.default_value);
+  return std::nullopt;
+}
+
+bool applies(const Section& section, const Key& key, const void* object) {
+  if (key.condition_key.empty()) return true;
+  const std::optional<Value> value = section.find(key.condition_key)->get(object);
+  return value && std::ranges::find(key.condition_values, std::get<std::string>(*value)) != key.condition_values.end();
+}
+
+std::string range_text(const Key& key) {
+  const Parameter& p = key.info;
+  const bool lower = std::isfinite(p.minimum), upper = std::isfinite(p.maximum);
+  std::string text;
+  if (lower && upper) {
+    text = fmt::format("must be in {}{}, {}{}", p.minimum_allowed ? '[' : '(', number_text(p.minimum),
+                       number_text(p.maximum), p.maximum_allowed ? ']' : ')');
+  } else if (lower) {
+    text = fmt::format("must be {} {}", p.minimum_allowed ? ">=" : ">", number_text(p.minimum));
+  } else if (upper) {
+    text = fmt::format("must be {} {}", p.maximum_allowed ? "<=" : "<", number_text(p.maximum));
+  } else {
+    return "";
+  }
+  return p.unit.empty() ? text : fmt::format("{} {}", text, p.unit);
+}
+
+std::string type_text(const Key& key, int dimension) {
+  switch (key.type) {
+    case ValueType::boolean:
+      return "true or false";
+    case ValueType::integer:
+      return "a whole number";
+    case ValueType::number:
+      return "a number";
+    case ValueType::text:
+      return "text in quotes";
+    case ValueType::choice:
+      return "one of " + quoted_list(key.choices);
+    case ValueType::vector:
+      return dimension == 0 ? "a list of 3 numbers (2 in a 2D scene)" : fmt::format("a list of {} numbers", dimension);
+    case ValueType::vector3:
+      return "a list of 3 numbers";
+    case ValueType::rotation:
+      if (dimension == 0) return "a list of 3 numbers (one number in a 2D scene)";
+      return dimension == 2 ? "a number" : "a list of 3 numbers";
+    case ValueType::interval:
+      return "a list of 2 numbers, the lower first";
+    case ValueType::box:
+      return "two corners, [[lowest], [highest]]";
+  }
+  return "";
+}
+
+}  // namespace firn

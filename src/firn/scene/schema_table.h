@@ -1,0 +1,15 @@
+#pragma once
+
+#include <firn/scene/schema.h>
+
+#include <vector>
+
+namespace firn {
+
+/// The table itself, built once by schema().
+std::vector<Section> make_schema();
+
+/// The part of it that follows from the materials' own declarations.
+Section make_material_section();
+
+}  // namespace firn

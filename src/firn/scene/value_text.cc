@@ -1,0 +1,90 @@
+#include <firn/scene/value_text.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace firn {
+namespace {
+
+std::string list_text(const std::vector<double>& numbers, std::size_t begin, std::size_t count) {
+  std::string text = "[";
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i > 0) text += ", ";
+    text += number_text(numbers[begin + i]);
+  }
+  return text + "]";
+}
+
+std::string numbers_text(ValueType type, const std::vector<double>& numbers, int dimension) {
+  const auto n = static_cast<std::size_t>(dimension);
+  switch (type) {
+    case ValueType::vector:
+      return list_text(numbers, 0, n);
+    case ValueType::rotation:
+      return dimension == 2 ? number_text(numbers[2]) : list_text(numbers, 0, 3);
+    case ValueType::box:
+      return fmt::format("[{}, {}]", list_text(numbers, 0, n), list_text(numbers, 3, n));
+    default:
+      return list_text(numbers, 0, numbers.size());
+  }
+}
+
+template <class Names>
+std::string join_quoted(const Names& names) {
+  std::string text;
+  for (const auto& name : names) {
+    if (!text.empty()) text += ", ";
+    text += in_quotes(name);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string number_text(double value) { return fmt::format("{}", value); }
+
+std::string quoted_list(const std::vector<std::string_view>& names) { return join_quoted(names); }
+std::string quoted_list(const std::vector<std::string>& names) { return join_quoted(names); }
+
+std::string in_quotes(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (c == '\n') {
+      out += "\\n";
+    } else if (code < 0x20 || code == 0x7f) {
+      out += fmt::format("\\u{:04X}", code);
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
+std::string key_text(std::string_view key) {
+  const bool bare = !key.empty() && std::ranges::all_of(key, [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
+  });
+  return bare ? std::string(key) : in_quotes(key);
+}
+
+std::string value_text(const Key& key, const Value& value, int dimension) {
+  struct Visitor {
+    ValueType type;
+    int dimension;
+    std::string operator()(bool b) const { return b ? "true" : "false"; }
+    std::string operator()(std::int64_t i) const { return fmt::format("{}", i); }
+    std::string operator()(double d) const { return number_text(d); }
+    std::string operator()(const std::string& s) const { return in_quotes(s); }
+    std::string operator()(const std::vector<double>& v) const { return numbers_text(type, v, dimension); }
+  };
+  return std::visit(Visitor{key.type, dimension}, value);
+}
+
+}  // namespace firn
