@@ -110,22 +110,36 @@ double surface_area(const TriangleMesh& mesh) {
   return twice_area / 2;
 }
 
+std::size_t merge_vertices(TriangleMesh& mesh) {
+  const std::vector<std::int32_t> first = first_at_same_position(mesh.vertices);
+  std::vector<std::int32_t> renumbered(first.size());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const auto original = static_cast<std::size_t>(first[i]);
+    if (original != i) {
+      renumbered[i] = renumbered[original];
+      continue;
+    }
+    renumbered[i] = static_cast<std::int32_t>(kept);
+    mesh.vertices[kept++] = mesh.vertices[i];
+  }
+  mesh.vertices.resize(kept);
+  for (Triangle& t : mesh.triangles) {
+    for (std::int32_t& v : t) v = renumbered[static_cast<std::size_t>(v)];
+  }
+  return first.size() - kept;
+}
+
 MeshCleanup clean(TriangleMesh& mesh) {
   MeshCleanup result;
-  const std::vector<std::int32_t> first = first_at_same_position(mesh.vertices);
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    if (first[i] != static_cast<std::int32_t>(i)) ++result.merged_vertices;
-  }
-  std::size_t kept = 0;
-  for (Triangle t : mesh.triangles) {
-    for (std::int32_t& v : t) v = first[static_cast<std::size_t>(v)];
+  result.merged_vertices = merge_vertices(mesh);
+  const auto has_no_area = [&](const Triangle& t) {
     const auto at = [&](std::size_t i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
-    if (norm(twice_area_vector(at(0), at(1), at(2))) > 0) mesh.triangles[kept++] = t;
-  }
-  result.degenerate_triangles = mesh.triangles.size() - kept;
-  mesh.triangles.resize(kept);
+    return norm(twice_area_vector(at(0), at(1), at(2))) == 0;
+  };
+  result.degenerate_triangles = std::erase_if(mesh.triangles, has_no_area);
   result.duplicate_triangles = remove_duplicates(mesh.triangles);
-  result.unused_vertices = remove_unused(mesh) - result.merged_vertices;
+  result.unused_vertices = remove_unused(mesh);
   return result;
 }
 

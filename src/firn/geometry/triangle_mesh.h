@@ -38,6 +38,9 @@ double enclosed_volume(const TriangleMesh& mesh);
 
 double surface_area(const TriangleMesh& mesh);
 
+/// Makes vertices at exactly the same position one; the first keeps its place in the order. Returns how many went.
+std::size_t merge_vertices(TriangleMesh& mesh);
+
 /// What clean() removed.
 struct MeshCleanup {
   std::size_t merged_vertices = 0;       ///< vertices at exactly the position of an earlier one
