@@ -1,0 +1,91 @@
+#pragma once
+
+#include <firn/state/aligned.h>
+#include <firn/state/cell_key.h>
+#include <firn/state/kernel.h>
+#include <firn/state/particles.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace firn {
+
+inline constexpr int kBlockSide = 4;  ///< nodes per axis of a grid block
+
+constexpr int power(int base, int exponent) { return exponent == 0 ? 1 : base * power(base, exponent - 1); }
+
+/// Nodes of a block; the last axis runs fastest.
+template <int dim>
+inline constexpr int kBlockNodes = power(kBlockSide, dim);
+
+/// Blocks that a particle block reaches: itself and its upper neighbours.
+template <int dim>
+inline constexpr int kReach = 1 << dim;
+
+/// Nodes per axis of the tile that the particles of one block touch.
+constexpr int tile_side(Kernel kernel) { return kBlockSide + support(kernel) - 1; }
+
+template <int dim>
+constexpr int tile_nodes(Kernel kernel) {
+  return power(tile_side(kernel), dim);
+}
+
+/// Every node value is four numbers: in 3D (x, y, z, mass), in 2D (x, y, 0, mass). What xyz means changes during the step:
+/// momentum in the tiles, then velocity on the nodes.
+inline constexpr int kNodeWidth = 4;
+inline constexpr int kMassSlot = 3;
+
+/// Sparse, unbounded grid: blocks of 4^dim nodes where particles are.
+///
+/// Particles of a block scatter into that block's private tile, which overlaps its upper neighbours; node blocks then sum the
+/// tiles that touch them in a fixed order, without atomics.
+template <class Real, int dim>
+class Grid {
+ public:
+  Grid(double dx, Kernel kernel, const Period<dim>& period) : dx_(dx), kernel_(kernel), period_(period) {}
+
+  double dx() const { return dx_; }
+  Kernel kernel() const { return kernel_; }
+  const Period<dim>& period() const { return period_; }
+
+  /// Creates the blocks for particles in the given blocks (ascending, unique); keeps everything if they are the same as before.
+  void activate(std::vector<std::uint64_t> particle_blocks);
+
+  std::span<const std::uint64_t> particle_blocks() const { return particle_blocks_; }
+  std::span<const std::uint64_t> node_blocks() const { return node_blocks_; }
+
+  /// Node block that offset o (bit d set: one block up on axis dim - 1 - d) of particle block b falls into.
+  std::int32_t node_block_of(std::size_t b, int o) const { return upper_[b][static_cast<std::size_t>(o)]; }
+  /// Particle block whose offset o is node block g; -1 if none.
+  std::int32_t particle_block_of(std::size_t g, int o) const { return lower_[g][static_cast<std::size_t>(o)]; }
+
+  /// Tile of particle block b: tile_nodes x kNodeWidth numbers.
+  Real* tile(std::size_t b) { return tiles_.data() + b * tile_size_; }
+  const Real* tile(std::size_t b) const { return tiles_.data() + b * tile_size_; }
+
+  /// Nodes of node block g: kBlockNodes x kNodeWidth numbers.
+  Real* nodes(std::size_t g) { return nodes_.data() + g * kBlockNodes<dim> * kNodeWidth; }
+  const Real* nodes(std::size_t g) const { return nodes_.data() + g * kBlockNodes<dim> * kNodeWidth; }
+
+  /// Velocity change of the step at the nodes of block g, for FLIP; allocated on request.
+  Real* velocity_change(std::size_t g) { return velocity_change_.data() + g * kBlockNodes<dim> * kNodeWidth; }
+  const Real* velocity_change(std::size_t g) const {
+    return velocity_change_.data() + g * kBlockNodes<dim> * kNodeWidth;
+  }
+  bool has_velocity_change() const { return keeps_velocity_change_; }
+  void keep_velocity_change(bool keep) { keeps_velocity_change_ = keep; }
+
+ private:
+  double dx_;
+  Kernel kernel_;
+  Period<dim> period_;
+  bool keeps_velocity_change_ = false;
+  std::size_t tile_size_ = 0;
+  std::vector<std::uint64_t> particle_blocks_, node_blocks_;
+  std::vector<std::array<std::int32_t, kReach<dim>>> upper_, lower_;
+  AlignedVector<Real> tiles_, nodes_, velocity_change_;
+};
+
+}  // namespace firn
