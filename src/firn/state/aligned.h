@@ -6,8 +6,8 @@
 
 namespace firn {
 
-/// Allocates at cache-line borders and leaves new elements uninitialised: the code that first writes them decides, and pays
-/// for, their contents and their memory page.
+/// Allocates at cache-line borders and leaves new elements uninitialised: the code that first writes them decides, and
+/// pays for, their contents and their memory page.
 template <class T>
 struct AlignedAllocator {
   using value_type = T;

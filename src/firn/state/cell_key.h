@@ -11,8 +11,8 @@ namespace firn {
 template <int dim>
 using Index = std::array<std::int64_t, dim>;
 
-/// A cell as a point on the Morton curve: the bits of its (shifted) coordinates interleaved, so that the cells of one block of
-/// 4^dim are consecutive and neighbouring blocks lie close together in memory.
+/// A cell as a point on the Morton curve: the bits of its (shifted) coordinates interleaved, so that the cells of one
+/// block of 4^dim are consecutive and neighbouring blocks lie close together in memory.
 ///
 /// Coordinates reach from -kCellLimit to kCellLimit - 1 on each axis.
 template <int dim>

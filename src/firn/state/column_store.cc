@@ -58,7 +58,8 @@ void ColumnStore::resize(std::size_t size) {
   } else if (size < size_) {
     for (Column& column : columns_) {
       const auto width = static_cast<std::size_t>(column.spec.element_bytes);
-      for (Buffer& component : column.components) std::memset(component.get() + size * width, 0, (size_ - size) * width);
+      for (Buffer& component : column.components)
+        std::memset(component.get() + size * width, 0, (size_ - size) * width);
     }
   }
   size_ = size;

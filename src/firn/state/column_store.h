@@ -9,7 +9,8 @@
 
 namespace firn {
 
-/// How one column of particle data is stored. Declared once; resize, reorder, hash, output and restart are derived from it.
+/// How one column of particle data is stored. Declared once; resize, reorder, hash, output and restart are derived from
+/// it.
 struct ColumnSpec {
   std::string name;  ///< as in output files
   std::string unit;

@@ -32,15 +32,15 @@ constexpr int tile_nodes(Kernel kernel) {
   return power(tile_side(kernel), dim);
 }
 
-/// Every node value is four numbers: in 3D (x, y, z, mass), in 2D (x, y, 0, mass). What xyz means changes during the step:
-/// momentum in the tiles, then velocity on the nodes.
+/// Every node value is four numbers: in 3D (x, y, z, mass), in 2D (x, y, 0, mass). What xyz means changes during the
+/// step: momentum in the tiles, then velocity on the nodes.
 inline constexpr int kNodeWidth = 4;
 inline constexpr int kMassSlot = 3;
 
 /// Sparse, unbounded grid: blocks of 4^dim nodes where particles are.
 ///
-/// Particles of a block scatter into that block's private tile, which overlaps its upper neighbours; node blocks then sum the
-/// tiles that touch them in a fixed order, without atomics.
+/// Particles of a block scatter into that block's private tile, which overlaps its upper neighbours; node blocks then
+/// sum the tiles that touch them in a fixed order, without atomics.
 template <class Real, int dim>
 class Grid {
  public:
@@ -50,7 +50,8 @@ class Grid {
   Kernel kernel() const { return kernel_; }
   const Period<dim>& period() const { return period_; }
 
-  /// Creates the blocks for particles in the given blocks (ascending, unique); keeps everything if they are the same as before.
+  /// Creates the blocks for particles in the given blocks (ascending, unique); keeps everything if they are the same as
+  /// before.
   void activate(std::vector<std::uint64_t> particle_blocks);
 
   std::span<const std::uint64_t> particle_blocks() const { return particle_blocks_; }

@@ -37,10 +37,14 @@ constexpr std::array<FieldSpec, kFieldCount> kFields = {{
 template <int dim>
 constexpr int component_count(Shape shape) {
   switch (shape) {
-    case Shape::scalar: return 1;
-    case Shape::vector: return dim;
-    case Shape::matrix: return dim * dim;
-    case Shape::stress: return dim == 3 ? 6 : 4;
+    case Shape::scalar:
+      return 1;
+    case Shape::vector:
+      return dim;
+    case Shape::matrix:
+      return dim * dim;
+    case Shape::stress:
+      return dim == 3 ? 6 : 4;
   }
   return 0;
 }
@@ -50,13 +54,11 @@ constexpr std::size_t kGrain = 1 << 14;
 struct Mover {
   std::uint64_t key;
   std::uint32_t particle;
-  bool operator<(const Mover& other) const {
-    return key != other.key ? key < other.key : particle < other.particle;
-  }
+  bool operator<(const Mover& other) const { return key != other.key ? key < other.key : particle < other.particle; }
 };
 
-/// The order that merges the particles which stayed (already sorted) with the movers, by (key, previous place). Chunks of
-/// stayers are independent: where a chunk's output begins follows from counting movers before it.
+/// The order that merges the particles which stayed (already sorted) with the movers, by (key, previous place). Chunks
+/// of stayers are independent: where a chunk's output begins follows from counting movers before it.
 void merge_order(const std::uint64_t* keys, std::size_t count, std::span<const std::uint32_t> movers,
                  const std::vector<Mover>& sorted_movers, std::vector<std::uint32_t>& order) {
   order.resize(count);
@@ -100,7 +102,9 @@ Particles<Real, dim>::Particles(const Options& options) : history_(options.histo
     const bool wanted = static_cast<Field>(f) == Field::grad_v         ? options.separate_grad_v
                         : static_cast<Field>(f) == Field::acceleration ? options.acceleration
                                                                        : true;
-    const int bytes = field.element == Element::real ? static_cast<int>(sizeof(Real)) : field.element == Element::key ? 8 : 4;
+    const int bytes = field.element == Element::real  ? static_cast<int>(sizeof(Real))
+                      : field.element == Element::key ? 8
+                                                      : 4;
     columns_[static_cast<std::size_t>(f)] =
         wanted ? store_.add({field.name, field.unit, field.help, component_count<dim>(field.shape), bytes}) : -1;
   }
@@ -134,9 +138,10 @@ void Particles<Real, dim>::append(std::span<const Vec<double, dim>> positions, d
     const std::size_t p = first + i;
     const auto place = cell_position<Real, dim>(positions[i], dx, kernel, period);
     if (!fits_key<dim>(place.cell)) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("particle {} lies more than {} cells from the origin; move the scene closer or use larger cells",
-                              first_id + i, CellKey<dim>::kCellLimit));
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("particle {} lies more than {} cells from the origin; move the scene closer or use larger cells",
+                      first_id + i, CellKey<dim>::kCellLimit));
     }
     cell()[p] = cell_key<dim>(place.cell);
     for (int d = 0; d < dim; ++d) real(Field::offset, d)[p] = place.offset[d];
@@ -187,9 +192,10 @@ void Particles<Real, dim>::find_blocks() {
   }
 }
 
-#define FIRN_INSTANTIATE(Real, dim)                                                                        \
-  template class Particles<Real, dim>;                                                                     \
-  template CellPosition<Real, dim> cell_position<Real, dim>(const Vec<double, dim>&, double, Kernel, const Period<dim>&);
+#define FIRN_INSTANTIATE(Real, dim)                                                                  \
+  template class Particles<Real, dim>;                                                               \
+  template CellPosition<Real, dim> cell_position<Real, dim>(const Vec<double, dim>&, double, Kernel, \
+                                                            const Period<dim>&);
 FIRN_INSTANTIATE(float, 2)
 FIRN_INSTANTIATE(float, 3)
 FIRN_INSTANTIATE(double, 2)

@@ -25,8 +25,9 @@ enum class Field : int {
   rest_volume,  ///< V_p^0, m^3 (m^2 in 2D)
   id,           ///< stable over the whole run
   body,         ///< index into the scene's bodies
-  grad_v,       ///< sum v_i grad w_ip^T, 1/s; only where it differs from C_p (the gradient form with quadratic or cubic kernels)
-  acceleration, ///< of the body_force callback, m/s^2; only with one
+  grad_v,       ///< sum v_i grad w_ip^T, 1/s; only where it differs from C_p (the gradient form with quadratic or cubic
+                ///< kernels)
+  acceleration,  ///< of the body_force callback, m/s^2; only with one
 };
 inline constexpr int kFieldCount = 12;
 
@@ -81,14 +82,15 @@ class Particles {
   /// Adds particles at rest in their undeformed state (F = I, C = 0, history at its initial value).
   /// @param positions world coordinates, m
   /// Error(usage) if a position lies more than CellKey::kCellLimit cells from the origin.
-  void append(std::span<const Vec<double, dim>> positions, double dx, Kernel kernel, const Period<dim>& period, double mass,
-              double rest_volume, std::uint32_t first_id, std::uint32_t body);
+  void append(std::span<const Vec<double, dim>> positions, double dx, Kernel kernel, const Period<dim>& period,
+              double mass, double rest_volume, std::uint32_t first_id, std::uint32_t body);
 
   /// World position of particle p, m.
   Vec<double, dim> position(std::size_t p, double dx, Kernel kernel) const;
 
   /// Restores the order after particles have changed cell.
-  /// @param movers the particles whose cell key has changed since the last call, ascending; new particles count as movers
+  /// @param movers the particles whose cell key has changed since the last call, ascending; new particles count as
+  /// movers
   void sort_by_cell(std::span<const std::uint32_t> movers);
 
   /// One entry per block that holds particles, in order. Valid after sort_by_cell.

@@ -17,7 +17,8 @@ Vec3d Snapshot::position(std::size_t p) const {
 double value(const SnapshotColumn& column, std::size_t p, int c) {
   return std::visit(
       [&](const auto& values) {
-        return static_cast<double>(values[p * static_cast<std::size_t>(column.components) + static_cast<std::size_t>(c)]);
+        return static_cast<double>(
+            values[p * static_cast<std::size_t>(column.components) + static_cast<std::size_t>(c)]);
       },
       column.values);
 }

@@ -30,12 +30,12 @@ struct SnapshotMaterial {
   std::size_t begin = 0, end = 0;
 };
 
-/// A copy of the particles at one instant, in world coordinates and in the order (material, id): what frames are written
-/// from and pictures are drawn from, safe to read while the simulation goes on.
+/// A copy of the particles at one instant, in world coordinates and in the order (material, id): what frames are
+/// written from and pictures are drawn from, safe to read while the simulation goes on.
 struct Snapshot {
   int dimension = 3;
-  double time = 0;       ///< s
-  double cell_size = 0;  ///< m
+  double time = 0;              ///< s
+  double cell_size = 0;         ///< m
   double particle_spacing = 0;  ///< m, (volume per particle)^(1/dimension) of the smallest particle
   std::vector<SnapshotMaterial> materials;
   std::vector<std::string> bodies;      ///< names, indexed by the column "body"
