@@ -72,7 +72,7 @@ class Override {
           merge_element(existing->node, element, find_section(entry.key));
         }
       } else {
-        existing->node = entry.node;
+        *existing = entry;
       }
     }
   }

@@ -57,8 +57,9 @@ class ValueReader {
 
   [[noreturn]] void out_of_range(const std::string& given) const {
     const std::string range = range_text(key_);
-    fail(fmt::format("{}, got {}{}{}", range.empty() ? "must be a finite number" : range, given,
-                     key_.info.hint.empty() ? "" : "; ", key_.info.hint));
+    const std::string unit = key_.info.unit.empty() ? "" : fmt::format(" {}", key_.info.unit);
+    fail(fmt::format("must be {}{}, got {}{}{}", range.empty() ? "a finite number" : range, range.empty() ? "" : unit,
+                     given, key_.info.hint.empty() ? "" : "; ", key_.info.hint));
   }
 
   /// "1,5" as text, or [1,5, 2,5] with twice as many whole numbers as expected.

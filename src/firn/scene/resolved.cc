@@ -50,8 +50,9 @@ class Writer {
 
   std::string moved(const std::string& path) const {
     if (folder_.empty()) return path;
-    const std::filesystem::path target = std::filesystem::absolute(scene_.locate(path)).lexically_normal();
-    const std::filesystem::path base = std::filesystem::absolute(folder_).lexically_normal();
+    // Canonical, because "../" out of a folder that was reached through a link does not lead back.
+    const std::filesystem::path target = std::filesystem::weakly_canonical(scene_.locate(path));
+    const std::filesystem::path base = std::filesystem::weakly_canonical(folder_);
     const std::filesystem::path relative = target.lexically_relative(base);
     return (relative.empty() ? target : relative).generic_string();
   }

@@ -58,18 +58,13 @@ bool applies(const Section& section, const Key& key, const void* object) {
 std::string range_text(const Key& key) {
   const Parameter& p = key.info;
   const bool lower = std::isfinite(p.minimum), upper = std::isfinite(p.maximum);
-  std::string text;
   if (lower && upper) {
-    text = fmt::format("must be in {}{}, {}{}", p.minimum_allowed ? '[' : '(', number_text(p.minimum),
-                       number_text(p.maximum), p.maximum_allowed ? ']' : ')');
-  } else if (lower) {
-    text = fmt::format("must be {} {}", p.minimum_allowed ? ">=" : ">", number_text(p.minimum));
-  } else if (upper) {
-    text = fmt::format("must be {} {}", p.maximum_allowed ? "<=" : "<", number_text(p.maximum));
-  } else {
-    return "";
+    return fmt::format("in {}{}, {}{}", p.minimum_allowed ? '[' : '(', number_text(p.minimum), number_text(p.maximum),
+                       p.maximum_allowed ? ']' : ')');
   }
-  return p.unit.empty() ? text : fmt::format("{} {}", text, p.unit);
+  if (lower) return fmt::format("{} {}", p.minimum_allowed ? ">=" : ">", number_text(p.minimum));
+  if (upper) return fmt::format("{} {}", p.maximum_allowed ? "<=" : "<", number_text(p.maximum));
+  return "";
 }
 
 std::string type_text(const Key& key, int dimension) {

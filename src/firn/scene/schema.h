@@ -84,7 +84,7 @@ std::string key_path(const Section& section, const Key& key);
 std::optional<Value> default_value(const Section& section, const Key& key);
 /// True if the key may be given for this object (its condition holds).
 bool applies(const Section& section, const Key& key, const void* object);
-/// "must be > 0 kg/m^3"; "" if any number is allowed.
+/// "> 0", "in (-1, 0.5)"; "" if any number is allowed.
 std::string range_text(const Key& key);
 /// "a number", "a list of 2 numbers"; with dimension 0, what holds for both: "a list of 3 numbers (2 in a 2D scene)".
 std::string type_text(const Key& key, int dimension = 0);

@@ -83,11 +83,15 @@ Key parameter_key(const Parameter& parameter) {
   key.info = parameter;
   key.type = ValueType::number;
   key.required = !in_range(parameter, parameter.default_value);
-  key.condition_key = "model";
   for (const ModelInfo& model : all_models()) {
     if (std::ranges::any_of(model.parameters, [&](const Parameter& p) { return p.name == parameter.name; })) {
       key.condition_values.push_back(model.name);
     }
+  }
+  if (key.condition_values.size() < all_models().size()) {
+    key.condition_key = "model";
+  } else {
+    key.condition_values.clear();
   }
   const std::string name(parameter.name);
   key.set = [name](void* object, const Value& value) { material(object).parameters[name] = std::get<double>(value); };
@@ -106,7 +110,7 @@ Section make_material_section() {
   Section section;
   section.kind = SectionKind::named;
   section.name = "material";
-  section.help = "A substance, [material.<name>]. Bodies refer to it by its name.";
+  section.help = "A substance, to which bodies refer by its name.";
   section.keys = {preset_key(), model_key(), density_key()};
   for (const ModelInfo& model : all_models()) {
     for (const Parameter& parameter : model.parameters) {

@@ -202,7 +202,7 @@ std::vector<Key> body_shape_keys() {
 }
 
 Section bodies() {
-  Section section = list("body", &Scene::bodies, "Something made of particles, [[body]].");
+  Section section = list("body", &Scene::bodies, "Something made of particles; one [[body]] each.");
   section.exactly_one_of = {{"mesh", "polygon", "shape"}};
   section.keys = body_shape_keys();
   const std::vector<Key> more = {
@@ -223,7 +223,7 @@ Section bodies() {
           .at_most(1)
           .default_text("the material's look")
           .presentation()
-          .help("Red, green, blue."),
+          .help("Red, green, blue: linear reflectance."),
   };
   section.keys.insert(section.keys.end(), more.begin(), more.end());
   return section;
@@ -255,7 +255,7 @@ std::vector<Key> collider_shape_keys() {
 }
 
 Section colliders() {
-  Section section = list("collider", &Scene::colliders, "A rigid obstacle, [[collider]].");
+  Section section = list("collider", &Scene::colliders, "A rigid obstacle; one [[collider]] each.");
   section.keys = collider_shape_keys();
   const std::vector<Key> more = {
       K("position", &ColliderSettings::position)
@@ -279,7 +279,7 @@ Section colliders() {
           .at_most(1)
           .default_text("grey")
           .presentation()
-          .help("Red, green, blue."),
+          .help("Red, green, blue: linear reflectance."),
   };
   section.keys.insert(section.keys.end(), more.begin(), more.end());
   return section;
@@ -337,7 +337,7 @@ Section render() {
           .help("Rays per pixel: less noise."),
       K("color_by", &RenderSettings::color_by)
           .presentation()
-          .help("\"material\" for its look, \"body\", or a column of the frames, such as \"speed\" or \"pressure\"."),
+          .help("\"material\" for its look, or a column of the frames, such as \"velocity\" or \"pressure\"."),
       K("range", &RenderSettings::range)
           .default_text("automatic")
           .presentation()

@@ -102,7 +102,7 @@ struct CameraSettings {
 
 struct RenderSettings {
   int width = 960, height = 540;  ///< pixels
-  int samples = 16;               ///< rays per pixel
+  int samples = 4;                ///< rays per pixel
   std::string color_by = "material";
   std::optional<std::array<double, 2>> range;  ///< of the coloured quantity, in its unit; without it: automatic
   bool film = true;

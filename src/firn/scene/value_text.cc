@@ -44,7 +44,14 @@ std::string join_quoted(const Names& names) {
 
 }  // namespace
 
-std::string number_text(double value) { return fmt::format("{}", value); }
+std::string number_text(double value) {
+  std::string text = fmt::format("{}", value);
+  // 10000000000000 is hard to read; 1e13 is not.
+  const std::size_t zeros = text.size() - 1 - text.find_last_not_of('0');
+  if (zeros < 5 || zeros == text.size() || text.find_first_not_of("-0123456789") != text.npos) return text;
+  text.resize(text.size() - zeros);
+  return fmt::format("{}e{}", text, zeros);
+}
 
 std::string quoted_list(const std::vector<std::string_view>& names) { return join_quoted(names); }
 std::string quoted_list(const std::vector<std::string>& names) { return join_quoted(names); }

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <firn/core/error.h>
+#include <firn/scene/load_scene.h>
+
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace firn::test {
+
+/// The smallest valid scene.
+inline const std::string kMinimal =
+    "end_time = 1\n"                // line 1
+    "resolution.cell_size = 0.1\n"  // 2
+    "[material.snow]\n"             // 3
+    "preset = \"snow\"\n"           // 4
+    "[[body]]\n"                    // 5
+    "shape = \"sphere\"\n"          // 6
+    "radius = 0.5\n"                // 7
+    "material = \"snow\"\n";        // 8
+
+/// kMinimal with other text in front, at its root.
+inline std::string with_root(const std::string& text) { return text + "\n" + kMinimal; }
+
+inline Scene parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return parse_scene(text, "scene.toml", overrides);
+}
+
+/// The message of the error that reading the text ends with, "" if there is none; `kind` receives its kind.
+inline std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {},
+                            ErrorKind* kind = nullptr) {
+  try {
+    parse(text, overrides);
+  } catch (const Error& error) {
+    if (kind) *kind = error.kind();
+    return error.what();
+  }
+  return "";
+}
+
+/// True if the whole text matches the regular expression (ECMAScript).
+inline testing::AssertionResult matches(const std::string& text, const std::string& pattern) {
+  if (std::regex_match(text, std::regex(pattern))) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "\n  text:    " << text << "\n  pattern: " << pattern;
+}
+
+/// True if the text contains the part.
+inline testing::AssertionResult contains(const std::string& text, const std::string& part) {
+  if (text.find(part) != std::string::npos) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "\n  text: " << text << "\n  lacks: " << part;
+}
+
+}  // namespace firn::test
