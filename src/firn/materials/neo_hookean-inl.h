@@ -33,6 +33,8 @@ struct NeoHookean {
       : mu(Scalar<T>(lame_mu(parameters.values[0], parameters.values[1]))),
         lambda(Scalar<T>(lame_lambda(parameters.values[0], parameters.values[1]))) {}
 
+  HWY_INLINE T volume_ratio(T J, const T* /*history*/) const { return J; }
+
   template <int dim>
   HWY_INLINE T energy(const Mat<T, dim>& F, const T* /*history*/) const {
     const T log_J = log(determinant(F));

@@ -50,6 +50,17 @@ double energy_of(int model, ModelList<Models...>, const ModelParameters& paramet
   return kFunctions[static_cast<std::size_t>(model)](parameters, F, history);
 }
 
+template <template <class> class... Models>
+double volume_ratio_of(int model, ModelList<Models...>, const ModelParameters& parameters, double J,
+                       const double* history) {
+  using Function = double (*)(const ModelParameters&, double, const double*);
+  static constexpr std::array<Function, sizeof...(Models)> kFunctions = {
+      +[](const ModelParameters& values, double ratio, const double* memory) {
+        return Models<double>(values).volume_ratio(ratio, memory);
+      }...};
+  return kFunctions[static_cast<std::size_t>(model)](parameters, J, history);
+}
+
 }  // namespace
 
 std::span<const ModelInfo> all_models() { return kInfos; }
@@ -69,6 +80,9 @@ int model_number(std::string_view name) {
 template <int dim>
 double energy_density(int model, const ModelParameters& parameters, const double* F, const double* history) {
   return energy_of<dim>(model, AllModels(), parameters, F, history);
+}
+double volume_ratio(int model, const ModelParameters& parameters, double J, const double* history) {
+  return volume_ratio_of(model, AllModels(), parameters, J, history);
 }
 template double energy_density<2>(int, const ModelParameters&, const double*, const double*);
 template double energy_density<3>(int, const ModelParameters&, const double*, const double*);

@@ -71,6 +71,8 @@ struct Snow {
 
   HWY_INLINE T hardening_factor(T Jp) const { return min(exp(hardening * (T(1) - Jp)), hardening_cap); }
 
+  HWY_INLINE T volume_ratio(T J, const T* history) const { return J * history[0]; }
+
   template <int dim>
   HWY_INLINE T energy(const Mat<T, dim>& Fe, const T* history) const {
     const T h = hardening_factor(history[0]);

@@ -47,4 +47,7 @@ UpdateStress<Real, dim> update_stress_function(int model);
 template <int dim>
 double energy_density(int model, const ModelParameters&, const double* F, const double* history);
 
+/// Current over undeformed volume, from J = det F of the stored strain.
+double volume_ratio(int model, const ModelParameters&, double J, const double* history);
+
 }  // namespace firn

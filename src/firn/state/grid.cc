@@ -50,9 +50,12 @@ void Grid<Real, dim>::activate(std::vector<std::uint64_t> particle_blocks) {
   }
 
   tile_size_ = static_cast<std::size_t>(tile_nodes<dim>(kernel_) * kNodeWidth);
-  tiles_.resize(particle_blocks_.size() * tile_size_);
+  tiles_[0].resize(particle_blocks_.size() * tile_size_);
   nodes_.resize(node_blocks_.size() * static_cast<std::size_t>(kBlockNodes<dim> * kNodeWidth));
-  if (keeps_velocity_change_) velocity_change_.resize(nodes_.size());
+  if (keeps_velocity_change_) {
+    tiles_[1].resize(tiles_[0].size());
+    velocity_change_.resize(nodes_.size());
+  }
 }
 
 template class Grid<float, 2>;

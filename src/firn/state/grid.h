@@ -62,9 +62,10 @@ class Grid {
   /// Particle block whose offset o is node block g; -1 if none.
   std::int32_t particle_block_of(std::size_t g, int o) const { return lower_[g][static_cast<std::size_t>(o)]; }
 
-  /// Tile of particle block b: tile_nodes x kNodeWidth numbers.
-  Real* tile(std::size_t b) { return tiles_.data() + b * tile_size_; }
-  const Real* tile(std::size_t b) const { return tiles_.data() + b * tile_size_; }
+  /// Tile of particle block b: tile_nodes x kNodeWidth numbers. Layer 0 holds the momentum with the impulse of the step's
+  /// forces; layer 1, kept for FLIP only, the momentum before it.
+  Real* tile(std::size_t b, int layer = 0) { return tiles_[layer].data() + b * tile_size_; }
+  const Real* tile(std::size_t b, int layer = 0) const { return tiles_[layer].data() + b * tile_size_; }
 
   /// Nodes of node block g: kBlockNodes x kNodeWidth numbers.
   Real* nodes(std::size_t g) { return nodes_.data() + g * kBlockNodes<dim> * kNodeWidth; }
@@ -86,7 +87,7 @@ class Grid {
   std::size_t tile_size_ = 0;
   std::vector<std::uint64_t> particle_blocks_, node_blocks_;
   std::vector<std::array<std::int32_t, kReach<dim>>> upper_, lower_;
-  AlignedVector<Real> tiles_, nodes_, velocity_change_;
+  AlignedVector<Real> tiles_[2], nodes_, velocity_change_;
 };
 
 }  // namespace firn

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <firn/core/linear_algebra.h>
+#include <firn/geometry/motion.h>
+#include <firn/geometry/shape.h>
+
+#include <memory>
+#include <string>
+
+namespace firn {
+
+/// What happens to the velocity of material against a collider's surface.
+enum class Contact {
+  sticky,    ///< moves with the collider
+  slip,      ///< slides along it, cannot leave it
+  separate,  ///< slides along it or leaves it
+};
+
+/// A solid, moving obstacle.
+template <int dim>
+struct Collider {
+  std::string name;
+  std::shared_ptr<const Shape<dim>> shape;  ///< in the collider's frame
+  RigidMotion<dim> motion;
+  Contact contact = Contact::separate;
+  double friction = 0;  ///< Coulomb coefficient; of slip and separate only
+};
+
+/// A collider at one instant: its frame is evaluated once and not per node.
+template <int dim>
+class PosedCollider {
+ public:
+  PosedCollider(const Collider<dim>& collider, double t);
+
+  /// Signed distance of world position x, m; negative inside.
+  double distance(const Vec<double, dim>& x) const;
+  /// Velocity of the collider at x, m/s.
+  Vec<double, dim> velocity(const Vec<double, dim>& x) const;
+
+  /// The velocity that material at x, inside the collider, may have instead of v (Stomakhin et al. 2013, section 8):
+  /// the relative velocity v - v_co loses its part into the surface, vn = (v - v_co) n < 0, and Coulomb friction takes
+  /// up to friction |vn| from its tangential part. Points outside keep v.
+  Vec<double, dim> admissible(const Vec<double, dim>& x, const Vec<double, dim>& v) const;
+
+ private:
+  Vec<double, dim> to_frame(const Vec<double, dim>& x) const;
+
+  const Collider<dim>* collider_;
+  double t_;
+  Vec<double, dim> origin_;
+  Mat<double, dim> rotation_, inverse_;
+};
+
+}  // namespace firn

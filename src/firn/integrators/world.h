@@ -1,0 +1,72 @@
+#pragma once
+
+#include <firn/colliders/collider.h>
+#include <firn/materials/model_parameters.h>
+#include <firn/state/grid.h>
+#include <firn/state/particles.h>
+#include <firn/transfer/transfer_settings.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace firn {
+
+/// The verbs of one step, in order: the headings of docs/algorithm.md and the rows of `firn bench`.
+enum class Verb { sort_by_cell, scatter, update_velocity, gather, update_stress };
+inline constexpr std::array<std::string_view, 5> kVerbNames = {"sort_by_cell", "scatter", "update_velocity", "gather",
+                                                               "update_stress"};
+
+/// Seconds spent in each verb since the start.
+using VerbTimes = std::array<double, kVerbNames.size()>;
+
+/// All particles of one material.
+template <class Real, int dim>
+struct MaterialSet {
+  std::string name;  ///< as in the scene
+  int model = 0;     ///< place in all_models()
+  ModelParameters parameters;
+  Particles<Real, dim> particles;
+
+  // What time step control knows from the last step.
+  double max_speed = 0;   ///< m/s
+  double wave_speed = 0;  ///< m/s
+
+  // Scratch of the step.
+  std::vector<std::vector<std::uint32_t>> movers_of_block = {};
+  std::vector<std::uint32_t> movers = {};  ///< particles that have changed cell and are not sorted in yet
+  std::vector<BlockRange> ranges = {};     ///< particles of each of the grid's particle blocks
+};
+
+/// Acceleration at world position x of the particle with this id at time t, m/s^2.
+template <int dim>
+using BodyForce = std::function<Vec<double, dim>(const Vec<double, dim>& x, std::uint32_t id, double t)>;
+
+/// Everything that a step reads and writes.
+template <class Real, int dim>
+struct World {
+  World(double dx, const TransferSettings& settings, const Period<dim>& period)
+      : transfer(settings), grid(dx, settings.kernel, period) {
+    grid.keep_velocity_change(settings.flip > 0);
+  }
+
+  TransferSettings transfer;
+  Grid<Real, dim> grid;
+  std::vector<MaterialSet<Real, dim>> materials;
+  std::vector<Collider<dim>> colliders;
+  Vec<double, dim> gravity = {};  ///< m/s^2
+  BodyForce<dim> body_force;      ///< may be empty; set it before particles are added
+  double t = 0;                   ///< s
+  std::uint64_t steps = 0;
+  double max_collider_speed = 0;  ///< at nodes inside colliders in the last step, m/s
+  VerbTimes verb_times = {};
+
+  /// Adds a material without particles. @param model place in all_models()
+  MaterialSet<Real, dim>& add_material(std::string name, int model, const ModelParameters& parameters);
+  std::size_t particle_count() const;
+};
+
+}  // namespace firn

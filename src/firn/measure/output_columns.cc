@@ -1,0 +1,107 @@
+#include <firn/materials/model_info.h>
+#include <firn/measure/output_columns.h>
+#include <firn/measure/particle_state.h>
+#include <firn/measure/stress_invariants.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace firn {
+namespace {
+
+template <class T>
+std::vector<T>& column(Snapshot& snapshot, const char* name, const char* unit, const char* help, int components) {
+  for (SnapshotColumn& existing : snapshot.columns) {
+    if (existing.name == name) return std::get<std::vector<T>>(existing.values);
+  }
+  snapshot.columns.push_back({name, unit, help, components, std::vector<T>()});
+  return std::get<std::vector<T>>(snapshot.columns.back().values);
+}
+
+/// History columns of all models, so that every snapshot has the same ones whichever materials it holds.
+std::vector<HistoryColumn> all_history() {
+  std::vector<HistoryColumn> all;
+  for (const ModelInfo& info : all_models()) {
+    for (const HistoryColumn& h : info.history) {
+      if (std::none_of(all.begin(), all.end(), [&](const HistoryColumn& other) { return other.name == h.name; })) {
+        all.push_back(h);
+      }
+    }
+  }
+  return all;
+}
+
+template <class Real, int dim>
+std::vector<std::uint32_t> id_order(const Particles<Real, dim>& particles) {
+  std::vector<std::uint32_t> order(particles.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return particles.id()[a] < particles.id()[b]; });
+  return order;
+}
+
+}  // namespace
+
+template <class Real, int dim>
+void append_to_snapshot(Snapshot& snapshot, const Particles<Real, dim>& particles, int model,
+                        const ModelParameters& parameters, const MaterialLabel& label, double dx, Kernel kernel) {
+  const std::size_t begin = snapshot.size();
+  const auto material = static_cast<std::int32_t>(snapshot.materials.size());
+  snapshot.materials.push_back({label.name, label.model, label.preset, begin, begin + particles.size()});
+  const std::vector<std::uint32_t> order = id_order(particles);
+
+  // Looked up one by one because adding a column may move the others.
+  const auto append = [&]<class T>(T, const char* name, const char* unit, const char* help, int components,
+                                   auto&& fill) {
+    std::vector<T>& values = column<T>(snapshot, name, unit, help, components);
+    values.reserve(values.size() + order.size() * static_cast<std::size_t>(components));
+    for (const std::uint32_t p : order) fill(values, p);
+  };
+  append(Real(), "position", "m", "Position.", 3, [&](auto& values, std::uint32_t p) {
+    const Vec<double, dim> x = particles.position(p, dx, kernel);
+    for (int i = 0; i < 3; ++i) values.push_back(i < dim ? static_cast<Real>(x[i < dim ? i : 0]) : Real(0));
+  });
+  append(Real(), "velocity", "m/s", "Velocity.", 3, [&](auto& values, std::uint32_t p) {
+    for (int i = 0; i < 3; ++i)
+      values.push_back(i < dim ? particles.real(Field::velocity, i < dim ? i : 0)[p] : Real(0));
+  });
+  append(std::int64_t(), "id", "", "Number of the particle, stable over the whole run.", 1,
+         [&](auto& values, std::uint32_t p) { values.push_back(particles.id()[p]); });
+  append(std::int32_t(), "body", "", "Index of the body that the particle was seeded in.", 1,
+         [&](auto& values, std::uint32_t p) { values.push_back(static_cast<std::int32_t>(particles.body()[p])); });
+  append(std::int32_t(), "material", "", "Index of the particle's material.", 1,
+         [&](auto& values, std::uint32_t) { values.push_back(material); });
+  const auto volume_ratio_at = [&](std::uint32_t p) {
+    return volume_ratio(particle_state(particles, p), model, parameters);
+  };
+  append(Real(), "J", "", "Current volume over undeformed volume.", 1,
+         [&](auto& values, std::uint32_t p) { values.push_back(static_cast<Real>(volume_ratio_at(p))); });
+  append(Real(), "von_mises_stress", "Pa", "Von Mises equivalent of the Cauchy stress.", 1,
+         [&](auto& values, std::uint32_t p) {
+           values.push_back(static_cast<Real>(von_mises(kirchhoff_stress(particles, p)) / volume_ratio_at(p)));
+         });
+  append(Real(), "pressure", "Pa", "Minus the mean Cauchy stress: positive in compression.", 1,
+         [&](auto& values, std::uint32_t p) {
+           values.push_back(static_cast<Real>(pressure(kirchhoff_stress(particles, p)) / volume_ratio_at(p)));
+         });
+  for (const HistoryColumn& h : all_history()) {
+    int own = -1;
+    for (int k = 0; k < particles.history_count(); ++k) own = particles.history_spec(k).name == h.name ? k : own;
+    append(Real(), std::string(h.name).c_str(), std::string(h.unit).c_str(), std::string(h.help).c_str(), 1,
+           [&](auto& values, std::uint32_t p) {
+             values.push_back(own < 0 ? static_cast<Real>(h.initial_value) : particles.history(own)[p]);
+           });
+  }
+}
+
+#define FIRN_INSTANTIATE(Real, dim)                                                                                \
+  template void append_to_snapshot<Real, dim>(Snapshot&, const Particles<Real, dim>&, int, const ModelParameters&, \
+                                              const MaterialLabel&, double, Kernel);
+FIRN_INSTANTIATE(float, 2)
+FIRN_INSTANTIATE(float, 3)
+FIRN_INSTANTIATE(double, 2)
+FIRN_INSTANTIATE(double, 3)
+#undef FIRN_INSTANTIATE
+
+}  // namespace firn
