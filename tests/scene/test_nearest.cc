@@ -17,6 +17,7 @@ TEST(EditDistance, CountsEditsAndSwaps) {
 
 TEST(NearestName, IsSilentWhenNothingIsNear) {
   EXPECT_EQ(nearest_name("densty", {"velocity", "density"}), "density");
+  EXPECT_EQ(nearest_name("vel", {"velocity", "density"}), "velocity");
   EXPECT_EQ(nearest_name("zzz", {"velocity", "density"}), "");
   EXPECT_EQ(nearest_name(std::string(100, 'a'), {std::string(99, 'a')}), "");
 }

@@ -153,11 +153,6 @@ void complete_pictures(SceneDraft& draft) {
                fmt::format("range must have its lower value first, got {} and {}", number_text((*render.range)[0]),
                            number_text((*render.range)[1])));
   }
-  for (const auto& [key, pixels] : {std::pair("width", render.width), std::pair("height", render.height)}) {
-    if (render.film && pixels % 2 != 0) {
-      draft.fail("render", 0, key, fmt::format("{} must be even for a film, got {}; or set film = false", key, pixels));
-    }
-  }
 }
 
 }  // namespace

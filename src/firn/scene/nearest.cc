@@ -34,7 +34,10 @@ std::string nearest_name(std::string_view given, const std::vector<std::string>&
       best_distance = distance;
     }
   }
-  return best;
+  if (!best.empty() || given.size() < 3) return best;
+  // An abbreviation is farther away than a slip, but as clear.
+  const auto prefixed = std::ranges::find_if(names, [&](const std::string& name) { return name.starts_with(given); });
+  return prefixed == names.end() ? "" : *prefixed;
 }
 
 std::string suggestion(std::string_view given, const std::vector<std::string>& names) {

@@ -10,7 +10,7 @@ namespace firn {
 /// (optimal string alignment distance).
 int edit_distance(std::string_view a, std::string_view b);
 
-/// The name most like `given`, or "" if none is like enough to be meant.
+/// The name most like `given`, or the first that it abbreviates, or "" if none is like enough to be meant.
 std::string nearest_name(std::string_view given, const std::vector<std::string>& names);
 
 /// "; did you mean \"density\"?" or, if no name is near, "; known: a, b, c"; "" if there are no names.

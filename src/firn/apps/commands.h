@@ -1,0 +1,27 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <stdexcept>
+
+/// The subcommands of `firn`. Each add_* function declares one: its options, its help and, as its callback, what it
+/// does. A callback ends by returning (exit code 0) or by throwing firn::Error or Interrupted; main.cc maps these to
+/// exit codes.
+namespace firn {
+
+/// The user asked the program to stop (SIGINT, SIGTERM) and it did so in good order: exit code 130.
+struct Interrupted : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+void add_doctor(CLI::App& program);
+void add_explain(CLI::App& program);
+
+/// All of them.
+void add_commands(CLI::App& program);
+
+/// Parses and runs. Returns the exit code for --help and --version; throws Error(usage) for a command line that is not
+/// understood, with the nearest name, and whatever the command throws.
+int run_command_line(CLI::App& program, int argc, const char* const* argv);
+
+}  // namespace firn

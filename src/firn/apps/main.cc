@@ -1,0 +1,47 @@
+#include <firn/apps/commands.h>
+#include <firn/core/error.h>
+#include <firn/core/log.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <new>
+
+namespace {
+
+constexpr int kInterrupted = 130, kUnexpected = 1;
+
+int report(const char* message, int exit_code) {
+  std::fprintf(stderr, "firn: %s\n", message);
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace firn;
+  set_log_sink([](LogLevel level, const std::string& line) {
+    std::fprintf(stderr, "firn: %s%s\n", level == LogLevel::warning ? "warning: " : "", line.c_str());
+  });
+  CLI::App program("Firn simulates snow, jelly and other materials by the material point method.", "firn");
+  program.set_version_flag("--version", "firn " FIRN_VERSION);
+  program.footer(
+      "`firn COMMAND --help` shows the options of a command; `firn explain` lists the keys of a scene file.");
+  add_commands(program);
+  try {
+    if (argc == 1) {
+      std::fputs(program.help().c_str(), stderr);
+      return static_cast<int>(ErrorKind::usage);
+    }
+    return run_command_line(program, argc, argv);
+  } catch (const Error& error) {
+    return report(error.what(), error.exit_code());
+  } catch (const Interrupted& stop) {
+    return report(stop.what(), kInterrupted);
+  } catch (const std::bad_alloc&) {
+    return report("out of memory; use fewer particles or a larger cell size", static_cast<int>(ErrorKind::resources));
+  } catch (const std::filesystem::filesystem_error& error) {
+    return report(error.what(), static_cast<int>(ErrorKind::files));
+  } catch (const std::exception& error) {
+    return report(error.what(), kUnexpected);
+  }
+}
