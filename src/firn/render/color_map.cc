@@ -92,7 +92,8 @@ std::vector<double> round_ticks(double low, double high, int wanted) {
                       : raw / power < 3.5 ? 2 * power
                       : raw / power < 7.5 ? 5 * power
                                           : 10 * power;
-  for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1) ticks.push_back(i * step);
+  // + 0.0 makes a negative zero positive: it would be printed as "-0".
+  for (double i = std::ceil(low / step - 1e-9) + 0.0; i * step <= high + 1e-9 * step; i += 1) ticks.push_back(i * step);
   return ticks;
 }
 

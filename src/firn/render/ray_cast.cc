@@ -80,7 +80,7 @@ class Caster {
 
   void choose_directions();
   static std::vector<Vec3f> local_centers(const Snapshot& snapshot, const CameraRays& rays);
-  RayGeometry geometry(const Snapshot& snapshot, const View& view, const Camera& camera) const;
+  RayGeometry geometry(const View& view, const Camera& camera) const;
   void draw_row(int y, Scratch* scratch, PixelLight* row) const;
   Surface surface_at(int x, const Ray& ray, const Hit& hit) const;
   void shape_particle(const Vec3f& place, Surface* surface) const;
@@ -114,10 +114,12 @@ Caster::Caster(const Snapshot& snapshot, const View& view, const Camera& camera,
       looks_(looks),
       ids_(snapshot.find("id")),
       rays_(camera, view.width, view.height),
-      spacing_(static_cast<float>(snapshot.particle_spacing)),
+      // A snapshot without particles has no spacing, but its colliders still want a length to look around by.
+      spacing_(snapshot.particle_spacing > 0 ? static_cast<float>(snapshot.particle_spacing)
+                                             : 0.02F * rays_.target_distance()),
       centers_(local_centers(snapshot, rays_)),
       field_(centers_, spacing_),
-      scene_(geometry(snapshot, view, camera)) {
+      scene_(geometry(view, camera)) {
   for (int a = 0; a < 3; ++a) {
     day_.sun_direction[a] = static_cast<float>(normalized(view.sun_direction)[a]);
     day_.up[a] = static_cast<float>(normalized(view.up)[a]);
@@ -147,10 +149,10 @@ std::vector<Vec3f> Caster::local_centers(const Snapshot& snapshot, const CameraR
   return centers;
 }
 
-RayGeometry Caster::geometry(const Snapshot& snapshot, const View& view, const Camera& camera) const {
+RayGeometry Caster::geometry(const View& view, const Camera& camera) const {
   RayGeometry geometry;
   geometry.particles.resize(centers_.size());
-  const float radius = static_cast<float>(view.radius_per_spacing * snapshot.particle_spacing);
+  const float radius = static_cast<float>(view.radius_per_spacing) * spacing_;
   parallel_chunks(centers_.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       // Crumbs off the body are small and of all sizes; inside it balls must overlap to close the surface.
