@@ -36,14 +36,17 @@ std::string Node::describe() const {
 }
 
 std::string Document::place(const Location& location) const {
-  if (location.override_index >= 0) return "--set " + overrides[static_cast<std::size_t>(location.override_index)];
+  if (location.override_index >= 0) {
+    return "--set " + one_line(overrides[static_cast<std::size_t>(location.override_index)]);
+  }
   return location.line == 0 ? name : fmt::format("{}:{}:{}", name, location.line, location.column);
 }
 
 std::string read_scene_text(const std::filesystem::path& path) {
   std::error_code ignored;
   const std::string resolved = std::filesystem::absolute(path, ignored).lexically_normal().string();
-  const std::string where = path.string() == resolved ? path.string() : fmt::format("{} ({})", path.string(), resolved);
+  const std::string where =
+      one_line(path.string() == resolved ? path.string() : fmt::format("{} ({})", path.string(), resolved));
   if (std::filesystem::is_directory(path, ignored)) {
     throw Error(ErrorKind::files, where + ": is a folder; give a scene file, such as scenes/snow_cube.toml");
   }
@@ -64,7 +67,8 @@ std::string read_scene_text(const std::filesystem::path& path) {
   return text;
 }
 
-Document parse_document(std::string name, const std::string& text) {
+Document parse_document(const std::string& given_name, const std::string& text) {
+  std::string name = one_line(given_name);
   check_text_limits(name, text);
   Document document;
   document.root = parse_toml(name, text);

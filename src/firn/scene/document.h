@@ -48,7 +48,7 @@ struct Node::Entry {
 
 /// A scene as text turned into a tree, with what is needed to name places in it.
 struct Document {
-  std::string name;                    ///< of the file, as given
+  std::string name;                    ///< of the file, for messages
   std::vector<std::string> overrides;  ///< as given
   Node root{.location = {}, .value = Node::Table{}};
 
@@ -63,7 +63,7 @@ inline constexpr std::size_t kMaxSceneBytes = 16u << 20;
 std::string read_scene_text(const std::filesystem::path& path);
 
 /// Throws Error(usage), located, if the text is not TOML, repeats a key, is nested too deeply or holds NUL bytes.
-Document parse_document(std::string name, const std::string& text);
+Document parse_document(const std::string& name, const std::string& text);
 
 /// Merges overrides "path.to.key=value" into the tree; bodies and colliders are named by index or name. The value is
 /// TOML; what is not TOML is taken as text, because shells eat quotes. Throws Error(usage).

@@ -2,6 +2,7 @@
 #include <firn/scene/document.h>
 #include <firn/scene/nearest.h>
 #include <firn/scene/schema.h>
+#include <firn/scene/value_text.h>
 
 #include <fmt/format.h>
 
@@ -24,13 +25,13 @@ class Override {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(ErrorKind::usage, fmt::format("--set {}: {}", text_, what));
+    throw Error(ErrorKind::usage, fmt::format("--set {}: {}", one_line(text_), what));
   }
 
   Node parsed() const {
     const auto equals = text_.find('=');
     if (equals == std::string::npos || equals == 0) fail("expected key=value, such as limits.speed=50");
-    check_text_limits("--set " + text_, text_);
+    check_text_limits("--set " + one_line(text_), text_);
     try {
       return parse_toml("", text_);
     } catch (const Error&) {

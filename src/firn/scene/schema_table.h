@@ -12,4 +12,7 @@ std::vector<Section> make_schema();
 /// The part of it that follows from the materials' own declarations.
 Section make_material_section();
 
+Section make_body_section();
+Section make_collider_section();
+
 }  // namespace firn

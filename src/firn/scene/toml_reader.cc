@@ -1,5 +1,6 @@
 #include <firn/core/error.h>
 #include <firn/scene/document.h>
+#include <firn/scene/value_text.h>
 
 #include <fmt/format.h>
 // The only file that sees the TOML library: its headers cost seconds of compilation.
@@ -122,7 +123,6 @@ std::string explained(const toml::parse_error& error, std::string_view text) {
   constexpr std::string_view kPrefix = "Error while parsing ";
   if (description.starts_with(kPrefix)) description.erase(0, kPrefix.size());
   description = "not TOML: " + description;
-  std::ranges::replace(description, '\n', ' ');
   const std::string_view source = line_of(text, line);
   const std::size_t comma = error.source().begin.column - 1;
   const auto digit = [&](std::size_t i) {
@@ -143,7 +143,8 @@ Node parse_toml(const std::string& name, const std::string& text) {
     return convert(toml::parse(text, name));
   } catch (const toml::parse_error& error) {
     const auto& begin = error.source().begin;
-    throw Error(ErrorKind::usage, fmt::format("{}:{}:{}: {}", name, begin.line, begin.column, explained(error, text)));
+    throw Error(ErrorKind::usage,
+                fmt::format("{}:{}:{}: {}", name, begin.line, begin.column, one_line(explained(error, text))));
   }
 }
 

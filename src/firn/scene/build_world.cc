@@ -1,0 +1,203 @@
+#include <firn/core/error.h>
+#include <firn/geometry/shapes.h>
+#include <firn/materials/model_info.h>
+#include <firn/scene/body_region.h>
+#include <firn/scene/build_world.h>
+#include <firn/seeding/sample.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace firn {
+namespace {
+
+template <int dim>
+Vec<double, dim> cut(const Vec3d& v) {
+  Vec<double, dim> r;
+  for (int i = 0; i < dim; ++i) r[i] = v[i];
+  return r;
+}
+
+template <int dim>
+Mat<double, dim> rotation_of(const Vec3d& degrees) {
+  if constexpr (dim == 3) return rotation_from_degrees(degrees);
+  if constexpr (dim == 2) return plane_rotation_from_degrees(degrees);
+}
+
+template <int dim>
+AngularVelocity<dim> spin_of(const Vec3d& angular_velocity) {
+  if constexpr (dim == 3) return angular_velocity;
+  if constexpr (dim == 2) return angular_velocity[2];
+}
+
+/// omega x, the velocity of rigid rotation, as a matrix: 1/s.
+template <int dim>
+Mat<double, dim> spin_matrix(const AngularVelocity<dim>& omega) {
+  if constexpr (dim == 3) return {{0, -omega[2], omega[1], omega[2], 0, -omega[0], -omega[1], omega[0], 0}};
+  if constexpr (dim == 2) return {{0, -omega, omega, 0}};
+}
+
+template <int dim>
+using Regions = std::vector<std::unique_ptr<Region<dim>>>;
+
+template <int dim>
+Regions<dim> regions_of(const Scene& scene) {
+  Regions<dim> regions;
+  for (const BodySettings& body : scene.bodies) regions.push_back(body_region<dim>(scene, body));
+  return regions;
+}
+
+template <int dim>
+WorldPlan plan_of(const Scene& scene, const Regions<dim>& regions) {
+  double volume = 0;
+  for (const auto& region : regions) volume += region->volume();
+  const ResolutionSettings& resolution = scene.resolution;
+  WorldPlan plan;
+  plan.cell_size = resolution.cell_size
+                       ? *resolution.cell_size
+                       : std::pow(volume * resolution.particles_per_cell / static_cast<double>(*resolution.particles), 1.0 / dim);
+  // With a given cell size the particles per cell are asked for, with a given number of particles that number is.
+  const double particles_per_volume = resolution.cell_size
+                                          ? resolution.particles_per_cell / std::pow(plan.cell_size, dim)
+                                          : static_cast<double>(*resolution.particles) / volume;
+  for (std::size_t b = 0; b < regions.size(); ++b) {
+    const double wanted = regions[b]->volume() * particles_per_volume;
+    if (!(wanted < std::numeric_limits<std::int32_t>::max())) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("body \"{}\": {:.3g} particles are more than the {} that Firn can number; use larger cells",
+                              scene.bodies[b].name, wanted, std::numeric_limits<std::int32_t>::max()));
+    }
+    if (!(wanted >= 1)) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("body \"{}\" would get no particle: it is {:.2g} cells wide (cell size {:.3g} m); did you mean "
+                              "units = \"mm\" or smaller cells?",
+                              scene.bodies[b].name, regions[b]->bounds().largest_side() / plan.cell_size, plan.cell_size));
+    }
+    const auto particles = static_cast<std::int64_t>(std::llround(wanted));
+    plan.bodies.push_back({scene.bodies[b].name, regions[b]->volume(), particles,
+                           regions[b]->bounds().largest_side() / plan.cell_size});
+    plan.particles += particles;
+  }
+  return plan;
+}
+
+template <int dim>
+Samples<dim> fill(const Scene& scene, const BodySettings& body, const Region<dim>& region, const WorldPlan& plan,
+                  std::size_t b) {
+  SamplingRequest request;
+  request.count = plan.bodies[b].particles;
+  request.seed = scene.seed + b;
+  if (body.fill == BodySettings::Fill::lattice) {
+    return sample_lattice<dim>(region, std::pow(region.volume() / static_cast<double>(*request.count), 1.0 / dim));
+  }
+  return sample_region<dim>(region, request);
+}
+
+/// Linear and angular velocity about the body's centre of mass.
+template <class Real, int dim>
+void set_velocities(World<Real, dim>& world, Particles<Real, dim>& particles, std::size_t first, const BodySettings& body,
+                    const std::vector<Vec<double, dim>>& positions) {
+  const Mat<double, dim> spin = spin_matrix<dim>(spin_of<dim>(body.angular_velocity));
+  Vec<double, dim> centre = {};
+  for (const auto& x : positions) centre += x;
+  centre = (1.0 / static_cast<double>(positions.size())) * centre;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vec<double, dim> v = cut<dim>(body.velocity) + spin * (positions[i] - centre);
+    for (int d = 0; d < dim; ++d) particles.real(Field::velocity, d)[first + i] = static_cast<Real>(v[d]);
+    if (world.transfer.affine == 0) continue;
+    for (int e = 0; e < dim * dim; ++e) particles.real(Field::affine, e)[first + i] = static_cast<Real>(spin.e[e]);
+  }
+}
+
+TransferSettings transfer_of(const MethodSettings& method) {
+  using Transfer = MethodSettings::Transfer;
+  TransferSettings settings;
+  settings.kernel = static_cast<Kernel>(method.kernel);
+  settings.form = static_cast<Form>(method.form);
+  settings.affine = method.transfer == Transfer::apic ? 1 : 0;
+  settings.flip = method.transfer == Transfer::flip ? 1 : method.transfer == Transfer::pic_flip ? method.flip_blend : 0;
+  return settings;
+}
+
+template <int dim>
+Collider<dim> collider_of(const ColliderSettings& settings) {
+  Collider<dim> collider;
+  collider.name = settings.name;
+  switch (settings.shape) {
+    case ColliderSettings::Shape::half_space:
+      collider.shape = std::make_shared<HalfSpace<dim>>(cut<dim>(settings.normal));
+      break;
+    case ColliderSettings::Shape::box: collider.shape = std::make_shared<Box<dim>>(0.5 * cut<dim>(settings.size)); break;
+    case ColliderSettings::Shape::sphere: collider.shape = std::make_shared<Sphere<dim>>(settings.radius); break;
+  }
+  collider.motion = {cut<dim>(settings.position), rotation_of<dim>(settings.rotation), cut<dim>(settings.velocity),
+                     spin_of<dim>(settings.angular_velocity)};
+  collider.contact = static_cast<Contact>(settings.contact);
+  collider.friction = settings.friction;
+  return collider;
+}
+
+ModelParameters parameters_of(const MaterialSettings& material, const ModelInfo& model) {
+  ModelParameters parameters;
+  parameters.density = material.density;
+  for (const Parameter& parameter : model.parameters) {
+    parameters.values.push_back(material.parameters.at(std::string(parameter.name)));
+  }
+  return parameters;
+}
+
+template <int dim>
+Period<dim> period_of(const Scene& scene, double cell_size) {
+  Period<dim> period = {};
+  for (int d = 0; d < dim; ++d) {
+    period[static_cast<std::size_t>(d)] = std::llround(scene.method.periodic[d] / cell_size);
+  }
+  return period;
+}
+
+}  // namespace
+
+WorldPlan plan_world(const Scene& scene) {
+  return scene.dimension == 2 ? plan_of<2>(scene, regions_of<2>(scene)) : plan_of<3>(scene, regions_of<3>(scene));
+}
+
+template <class Real, int dim>
+BuiltWorld<Real, dim> build_world(const Scene& scene) {
+  const Regions<dim> regions = regions_of<dim>(scene);
+  WorldPlan plan = plan_of<dim>(scene, regions);
+  World<Real, dim> world(plan.cell_size, transfer_of(scene.method), period_of<dim>(scene, plan.cell_size));
+  world.gravity = cut<dim>(scene.gravity);
+  for (const ColliderSettings& collider : scene.colliders) world.colliders.push_back(collider_of<dim>(collider));
+  for (const MaterialSettings& material : scene.materials) {
+    const int model = model_number(material.model);
+    world.add_material(material.name, model, parameters_of(material, all_models()[static_cast<std::size_t>(model)]));
+  }
+
+  std::uint32_t next_id = 0;
+  plan.particles = 0;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const BodySettings& body = scene.bodies[b];
+    const Samples<dim> samples = fill<dim>(scene, body, *regions[b], plan, b);
+    for (auto& material : world.materials) {
+      if (material.name != body.material) continue;
+      const std::size_t first = material.particles.size();
+      material.particles.append(samples.positions, plan.cell_size, world.transfer.kernel, world.grid.period(),
+                                material.parameters.density * samples.volume_per_sample, samples.volume_per_sample, next_id,
+                                static_cast<std::uint32_t>(b));
+      set_velocities(world, material.particles, first, body, samples.positions);
+    }
+    plan.bodies[b].particles = static_cast<std::int64_t>(samples.positions.size());
+    plan.particles += plan.bodies[b].particles;
+    next_id += static_cast<std::uint32_t>(samples.positions.size());
+  }
+  return {std::move(world), std::move(plan)};
+}
+
+template BuiltWorld<float, 2> build_world<float, 2>(const Scene&);
+template BuiltWorld<float, 3> build_world<float, 3>(const Scene&);
+template BuiltWorld<double, 2> build_world<double, 2>(const Scene&);
+template BuiltWorld<double, 3> build_world<double, 3>(const Scene&);
+
+}  // namespace firn

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <firn/integrators/world.h>
+#include <firn/scene/settings.h>
+#include <firn/state/snapshot.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace firn {
+
+/// What a scene comes to before anything is simulated.
+struct WorldPlan {
+  struct Body {
+    std::string name;
+    double volume = 0;           ///< m^3 (m^2 in 2D)
+    std::int64_t particles = 0;  ///< that its share of the resolution asks for
+    double width_in_cells = 0;   ///< longest side of its bounding box
+  };
+  double cell_size = 0;  ///< m
+  std::int64_t particles = 0;
+  std::vector<Body> bodies;
+};
+
+/// Reads meshes and measures bodies, without placing a particle. Warnings about meshes go to the log.
+/// Error(usage) for bodies that are too small for the cells or too large for the machine, and for what prepare_mesh
+/// refuses.
+WorldPlan plan_world(const Scene& scene);
+
+/// A scene ready to be simulated.
+template <class Real, int dim>
+struct BuiltWorld {
+  World<Real, dim> world;
+  WorldPlan plan;
+};
+
+/// Fills the bodies with particles and sets up materials, colliders and the grid. Real and dim must be the scene's.
+template <class Real, int dim>
+BuiltWorld<Real, dim> build_world(const Scene& scene);
+
+}  // namespace firn

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <firn/scene/key_builder.h>
+
+/// The words of the scene file for the enums of settings.h, in the enums' order.
+namespace firn {
+
+template <>
+struct ChoiceNames<Scene::Precision> {
+  static constexpr std::string_view list[] = {"single", "double"};
+};
+template <>
+struct ChoiceNames<Scene::Up> {
+  static constexpr std::string_view list[] = {"y", "z"};
+};
+template <>
+struct ChoiceNames<Scene::Rollback> {
+  static constexpr std::string_view list[] = {"memory", "off"};
+};
+template <>
+struct ChoiceNames<MethodSettings::Transfer> {
+  static constexpr std::string_view list[] = {"pic", "flip", "pic_flip", "apic"};
+};
+template <>
+struct ChoiceNames<MethodSettings::Kernel> {
+  static constexpr std::string_view list[] = {"linear", "quadratic", "cubic"};
+};
+template <>
+struct ChoiceNames<MethodSettings::Form> {
+  static constexpr std::string_view list[] = {"mls", "gradient"};
+};
+template <>
+struct ChoiceNames<BodySettings::Shape> {
+  static constexpr std::string_view list[] = {"box", "sphere", "disk"};
+};
+template <>
+struct ChoiceNames<BodySettings::Fill> {
+  static constexpr std::string_view list[] = {"poisson", "lattice"};
+};
+template <>
+struct ChoiceNames<BodySettings::Units> {
+  static constexpr std::string_view list[] = {"m", "cm", "mm"};
+};
+template <>
+struct ChoiceNames<ColliderSettings::Shape> {
+  static constexpr std::string_view list[] = {"half_space", "box", "sphere"};
+};
+template <>
+struct ChoiceNames<ColliderSettings::Contact> {
+  static constexpr std::string_view list[] = {"sticky", "slip", "separate"};
+};
+
+}  // namespace firn
