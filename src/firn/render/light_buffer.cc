@@ -39,7 +39,7 @@ std::vector<Guide> guides(const LightBuffer& buffer) {
 
 Visibility average_visibility(const LightBuffer& buffer, const std::vector<Guide>& guide, int x, int y) {
   const Guide& center = guide[static_cast<std::size_t>(y * buffer.width + x)];
-  float surface = 0, sky = 0, flat = 0, sun = 0;
+  float rays = 0, sky = 0, flat = 0, sun = 0;
   for (int v = std::max(y - 1, 0); v <= std::min(y + 2, buffer.height - 1); ++v) {
     for (int u = std::max(x - 1, 0); u <= std::min(x + 2, buffer.width - 1); ++u) {
       const auto i = static_cast<std::size_t>(v * buffer.width + u);
@@ -48,13 +48,13 @@ Visibility average_visibility(const LightBuffer& buffer, const std::vector<Guide
       const float distance = guide[i].depth - center.depth;
       const float alike = std::max(dot(guide[i].normal, center.normal), 0.0F);
       const float weight = alike * alike * alike * alike / (1 + distance * distance) + 1e-6F;
-      surface += weight * other.surface;
+      rays += weight * other.sky_rays;
       sky += weight * other.sky_visible;
       flat += weight * other.flat;
       sun += weight * other.sun_visible;
     }
   }
-  return {surface > 0 ? sky / surface : 1, flat > 0 ? sun / flat : 1};
+  return {rays > 0 ? sky / rays : 1, flat > 0 ? sun / flat : 1};
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ struct PixelLight {
   Vec3f normal = {};
   float depth = 0;        ///< m
   float surface = 0;      ///< samples that met a surface
-  float sky_visible = 0;  ///< of these, how many saw the sky in one random direction
+  float sky_rays = 0;     ///< of these, how many looked for the sky in one direction
+  float sky_visible = 0;  ///< and saw it
   float flat = 0;         ///< samples on planes and colliders
   float sun_visible = 0;  ///< of these, how many saw one random point of the sun
 };

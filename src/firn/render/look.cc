@@ -8,7 +8,7 @@ constexpr Look kLooks[] = {
     // Fresh snow reflects 0.85 to 0.95 of visible light, blue a little more than red (Warren 1982, fig. 10).
     {.name = "snow",
      .color = {{0.90F, 0.925F, 0.95F}},
-     .wrap = 0.30F,
+     .wrap = 0.22F,
      .smooth = 0.80F,
      .jitter = 0.05F,
      .sparkle = 1.2F,
@@ -53,7 +53,7 @@ const Look& find_look(const SnapshotMaterial& material) {
   return kNeutral;
 }
 
-const Vec3f kGroundColor = {{0.20F, 0.215F, 0.235F}};
+const Vec3f kGroundColor = {{0.24F, 0.255F, 0.275F}};
 const Vec3f kColliderColor = {{0.36F, 0.21F, 0.115F}};
 
 }  // namespace firn

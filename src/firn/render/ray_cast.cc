@@ -60,7 +60,8 @@ struct Surface {
   Vec3f normal;  ///< for shading
   Vec3f color;
   const Look* look;
-  float body = 0;  ///< 1: part of a dense body, 0: a loose particle
+  float body = 0;                  ///< 1: part of a dense body, 0: a loose particle
+  int sun_ray = -1, sky_ray = -1;  ///< indices of its rays; -1: none was sent
 };
 
 constexpr Look kSolidLook = {.name = "", .color = {}};
@@ -84,7 +85,8 @@ class Caster {
   void draw_row(int y, Scratch* scratch, PixelLight* row) const;
   Surface surface_at(int x, const Ray& ray, const Hit& hit) const;
   void shape_particle(const Vec3f& place, Surface* surface) const;
-  void light(const Surface& surface, bool sun_visible, bool sky_visible, PixelLight* pixel) const;
+  void send_rays(int sample, int y, Surface* surface, Scratch* scratch) const;
+  void light(const Surface& surface, const Scratch& scratch, PixelLight* pixel) const;
   Vec3f sunlit_particle(const Surface& surface, float visible) const;
   float haze(const Surface& surface) const;
 
@@ -200,7 +202,7 @@ void Caster::shape_particle(const Vec3f& place, Surface* surface) const {
 
 Surface Caster::surface_at(int x, const Ray& ray, const Hit& hit) const {
   const Vec3f place = ray.origin + hit.distance * ray.direction;
-  Surface s{x, hit.kind, hit.index, hit.distance, ray.direction, place, hit.normal, kColliderColor, &kSolidLook, 0};
+  Surface s{x, hit.kind, hit.index, hit.distance, ray.direction, place, hit.normal, kColliderColor, &kSolidLook};
   if (hit.kind == HitKind::particle) {
     s.look = &looks_.looks[looks_.look_of[hit.index]];
     s.color = looks_.color[hit.index];
@@ -219,7 +221,7 @@ Vec3f Caster::sunlit_particle(const Surface& s, float visible) const {
   const Look& look = *s.look;
   const float cosine = dot(s.normal, day_.sun_direction);
   // A loose particle is a crystal or a flake that light passes through, not an opaque ball.
-  const float wrap = look.wrap + (1 - s.body) * look.wrap;
+  const float wrap = look.wrap * (2 - s.body);
   const float diffuse = std::max((cosine + wrap) / (1 + wrap), 0.0F);
   Vec3f light = visible * diffuse * product(s.color, day_.sun);
   light += (0.6F - 0.4F * cosine) * product(look.glow, day_.sun);
@@ -239,63 +241,75 @@ Vec3f Caster::sunlit_particle(const Surface& s, float visible) const {
   return light;
 }
 
-void Caster::light(const Surface& s, bool sun_visible, bool sky_visible, PixelLight* pixel) const {
+void Caster::light(const Surface& s, const Scratch& t, PixelLight* pixel) const {
   const float fog = haze(s), clear = 1 - fog;
+  const float sun_visible = s.sun_ray >= 0 && t.sun_blocked[static_cast<std::size_t>(s.sun_ray)] == 0 ? 1 : 0;
   pixel->surface += 1;
-  pixel->sky_visible += sky_visible ? 1.0F : 0.0F;
+  if (s.sky_ray >= 0) {
+    pixel->sky_rays += 1;
+    pixel->sky_visible += t.sky_blocked[static_cast<std::size_t>(s.sky_ray)] == 0 ? 1.0F : 0.0F;
+  }
   pixel->normal += s.normal;
   pixel->depth += s.distance;
   pixel->albedo += s.color;
   pixel->ambient += clear * product(s.color, day_.ambient(s.normal));
   pixel->direct += fog * day_.horizon();
   if (s.kind == HitKind::particle) {
-    pixel->direct += clear * sunlit_particle(s, sun_visible ? 1.0F : 0.0F);
+    pixel->direct += clear * sunlit_particle(s, sun_visible);
   } else {
     pixel->flat += 1;
-    pixel->sun_visible += sun_visible ? 1.0F : 0.0F;
+    pixel->sun_visible += sun_visible;
     pixel->sun += (clear * std::max(dot(s.normal, day_.sun_direction), 0.0F)) * product(s.color, day_.sun);
   }
 }
 
+void Caster::send_rays(int sample, int y, Surface* s, Scratch* t) const {
+  const std::uint32_t tile = tile_number(s->x, y);
+  const float wrap = s->look->wrap * (2 - s->body);
+  if (dot(s->normal, day_.sun_direction) > -wrap) {  // else the sun adds nothing
+    s->sun_ray = static_cast<int>(t->sun_rays.size());
+    t->sun_rays.push_back({s->origin, sun_directions_[16 * static_cast<std::size_t>(sample) + tile]});
+  }
+  if (sample % 2 == 0) {
+    s->sky_ray = static_cast<int>(t->sky_rays.size());
+    const Vec3f& local = sky_directions_[8 * static_cast<std::size_t>(sample) + tile];
+    t->sky_rays.push_back({s->origin, Frame(s->normal).world(local)});
+  }
+}
+
 void Caster::draw_row(int y, Scratch* t, PixelLight* row) const {
-  const int samples = view_.samples;
-  const auto count = static_cast<std::size_t>(view_.width * samples);
-  t->rays.resize(count);
-  t->hits.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const int x = static_cast<int>(i) / samples;
-    const Point2 inside = spread_point(static_cast<std::uint32_t>(static_cast<int>(i) % samples));
-    t->rays[i] = rays_.at(static_cast<float>(x) + inside.x, static_cast<float>(y) + inside.y);
+  const int samples = view_.samples, count = view_.width * samples;
+  t->rays.resize(static_cast<std::size_t>(count));
+  t->hits.resize(t->rays.size());
+  for (int i = 0; i < count; ++i) {
+    const Point2 inside = spread_point(static_cast<std::uint32_t>(i % samples));
+    t->rays[static_cast<std::size_t>(i)] =
+        rays_.at(static_cast<float>(i / samples) + inside.x, static_cast<float>(y) + inside.y);
   }
   scene_.intersect(t->rays, t->hits);
 
   t->surfaces.clear();
   t->sun_rays.clear();
   t->sky_rays.clear();
-  for (std::size_t i = 0; i < count; ++i) {
-    const int x = static_cast<int>(i) / samples;
-    if (t->hits[i].kind == HitKind::none) {
-      row[x].direct += day_.sky(t->rays[i].direction);
-      continue;
+  for (int i = 0; i < count; ++i) {
+    const Ray& ray = t->rays[static_cast<std::size_t>(i)];
+    const Hit& hit = t->hits[static_cast<std::size_t>(i)];
+    if (hit.kind == HitKind::none) {
+      row[i / samples].direct += day_.sky(ray.direction);
+    } else {
+      t->surfaces.push_back(surface_at(i / samples, ray, hit));
+      send_rays(i % samples, y, &t->surfaces.back(), t);
     }
-    const Surface surface = surface_at(x, t->rays[i], t->hits[i]);
-    const auto sample = static_cast<std::uint32_t>(static_cast<int>(i) % samples);
-    const std::size_t choice = 16 * sample + tile_number(x, y);
-    t->sun_rays.push_back({surface.origin, sun_directions_[choice]});
-    t->sky_rays.push_back({surface.origin, Frame(surface.normal).world(sky_directions_[choice])});
-    t->surfaces.push_back(surface);
   }
-  t->sun_blocked.resize(t->surfaces.size());
-  t->sky_blocked.resize(t->surfaces.size());
+  t->sun_blocked.resize(t->sun_rays.size());
+  t->sky_blocked.resize(t->sky_rays.size());
   scene_.occluded(t->sun_rays, std::numeric_limits<float>::infinity(), true, t->sun_blocked);
   scene_.occluded(t->sky_rays, kAmbientReach * spacing_, false, t->sky_blocked);
-  for (std::size_t i = 0; i < t->surfaces.size(); ++i) {
-    light(t->surfaces[i], t->sun_blocked[i] == 0, t->sky_blocked[i] == 0, &row[t->surfaces[i].x]);
-  }
+  for (const Surface& surface : t->surfaces) light(surface, *t, &row[surface.x]);
 }
 
 Image Caster::draw() const {
-  LightBuffer buffer{view_.width, view_.height, static_cast<float>(view_.samples), 2 * spacing_, {}};
+  LightBuffer buffer{view_.width, view_.height, static_cast<float>(view_.samples), 4 * spacing_, {}};
   buffer.pixels.resize(static_cast<std::size_t>(view_.width) * static_cast<std::size_t>(view_.height));
   parallel_chunks(static_cast<std::size_t>(view_.height), 4, [&](std::size_t begin, std::size_t end) {
     Scratch scratch;

@@ -48,12 +48,12 @@ struct DrawnSphere {
 struct View {
   std::optional<Camera> camera;  ///< none: automatic_camera
   int width = 960, height = 540;
-  /// Rays per pixel; in 3D each hit adds a ray to the sun and one to the sky. Shadows and sky light are averaged over
-  /// 4 x 4 pixels of the same surface, so that 4 give the quality of 64 there.
+  /// Rays per pixel; in 3D each hit adds a ray to the sun and every second one a ray to the sky. Light of the sky, and
+  /// shadows on solids, are averaged over 4 x 4 pixels of the same surface, so that 4 give the quality of 32 there.
   int samples = 4;
-  Vec3d up = {{0, 1, 0}};                     ///< where the sky is
-  Vec3d sun_direction = {{0.5, 0.75, 0.35}};  ///< towards the sun
-  double radius_per_spacing = 0.6;            ///< radius of a particle / particle_spacing
+  Vec3d up = {{0, 1, 0}};                       ///< where the sky is
+  Vec3d sun_direction = {{-0.35, 0.75, 0.55}};  ///< towards the sun
+  double radius_per_spacing = 0.6;              ///< radius of a particle / particle_spacing
 
   std::map<std::string, Vec3f> material_colors;  ///< by material name, linear RGB, instead of the look's colour
   std::map<std::string, Vec3f> body_colors;      ///< by body name; wins over the material's
