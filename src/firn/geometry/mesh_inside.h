@@ -15,6 +15,8 @@ class MeshInside {
   explicit MeshInside(const TriangleMesh& mesh, int cells = 96);
 
   bool contains(const Vec3d& x) const;
+  /// False without much work for most points outside; true says nothing.
+  bool may_contain(const Vec3d& x) const { return grid_.at(x) != InsideGrid<3>::Kind::outside; }
   /// False only if no point of the box is inside.
   bool may_overlap(const Bounds<3>& box) const { return grid_.may_overlap(box); }
 
