@@ -72,5 +72,46 @@ TEST(Doctor, RefusesAnUnknownInstructionSet) {
   EXPECT_TRUE(matches(result.errors, "firn: .*\"abacus\".*baseline.*\n"));
 }
 
+const std::string kCube = "'" FIRN_SOURCE_DIR "/scenes/meshes/cube.obj'";
+
+TEST(Sample, WritesAsManyPointsAsAsked) {
+  const std::string path = testing::TempDir() + "/firn sample.ply";
+  const ProgramResult result = run_firn("sample " + kCube + " --count 1000 -o '" + path + "'");
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  std::smatch parts;
+  ASSERT_TRUE(std::regex_search(result.output, parts,
+                                std::regex(R"(^([0-9]+) points, at least [0-9.]+ apart, in a volume of 1:)")))
+      << result.output;
+  EXPECT_NEAR(std::stoi(parts[1]), 1000, 20);
+  std::ostringstream file;
+  file << std::ifstream(path, std::ios::binary).rdbuf();
+  EXPECT_NE(file.str().find("element vertex " + parts[1].str() + "\n"), std::string::npos);
+  std::remove(path.c_str());
+}
+
+TEST(Sample, TheSeedDecidesTheBytes) {
+  const auto bytes = [](const std::string& seed) {
+    const std::string path = testing::TempDir() + "/firn_seed.ply";
+    EXPECT_EQ(run_firn("sample " + kCube + " --radius 0.2 --seed " + seed + " -o '" + path + "'").exit_code, 0);
+    std::ostringstream file;
+    file << std::ifstream(path, std::ios::binary).rdbuf();
+    std::remove(path.c_str());
+    return file.str();
+  };
+  EXPECT_TRUE(bytes("3") == bytes("3"));
+  EXPECT_FALSE(bytes("3") == bytes("4"));
+}
+
+TEST(Sample, ErrorsHaveTheirExitCodes) {
+  const auto code = [](const std::string& arguments) { return run_firn("sample " + arguments).exit_code; };
+  EXPECT_EQ(code(kCube + " -o x.ply"), 2) << "neither radius nor count";
+  EXPECT_EQ(code(kCube + " --radius 0.1 --count 10 -o x.ply"), 2) << "both";
+  EXPECT_EQ(code(kCube + " --radius 0.1"), 2) << "no output";
+  EXPECT_EQ(code(kCube + " --radius=-1 -o x.ply"), 2) << "negative radius";
+  EXPECT_EQ(code(kCube + " --count=0 -o x.ply"), 2) << "no points";
+  EXPECT_EQ(code("no_such_mesh.obj --radius 0.1 -o x.ply"), 3) << "missing mesh";
+  EXPECT_EQ(code(kCube + " --radius 0.1 -o /no/such/folder/x.ply"), 3) << "missing folder";
+}
+
 }  // namespace
 }  // namespace firn::test

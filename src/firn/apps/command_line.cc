@@ -40,6 +40,7 @@ std::string unexpected_argument(const CLI::App& program) {
 }  // namespace
 
 void add_commands(CLI::App& program) {
+  add_sample(program);
   add_explain(program);
   add_doctor(program);
 }

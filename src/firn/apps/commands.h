@@ -16,6 +16,7 @@ struct Interrupted : std::runtime_error {
 
 void add_doctor(CLI::App& program);
 void add_explain(CLI::App& program);
+void add_sample(CLI::App& program);
 
 /// All of them.
 void add_commands(CLI::App& program);
