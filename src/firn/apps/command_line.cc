@@ -40,9 +40,13 @@ std::string unexpected_argument(const CLI::App& program) {
 }  // namespace
 
 void add_commands(CLI::App& program) {
+  add_run(program);
+  add_check(program);
+  add_render(program);
   add_sample(program);
   add_explain(program);
   add_doctor(program);
+  add_bench(program);
 }
 
 int run_command_line(CLI::App& program, int argc, const char* const* argv) {

@@ -14,9 +14,13 @@ struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-void add_doctor(CLI::App& program);
+void add_run(CLI::App& program);
+void add_check(CLI::App& program);
+void add_render(CLI::App& program);
 void add_explain(CLI::App& program);
 void add_sample(CLI::App& program);
+void add_doctor(CLI::App& program);
+void add_bench(CLI::App& program);
 
 /// All of them.
 void add_commands(CLI::App& program);

@@ -23,9 +23,9 @@ std::string field(const char* path, const std::string& key) {
   return "";
 }
 
-/// Of /proc/meminfo, whose numbers are in KiB.
-std::uint64_t memory_field(const std::string& key) {
-  const std::string text = field("/proc/meminfo", key);
+/// A size in a file of such lines, which count in KiB.
+std::uint64_t size_field(const char* path, const std::string& key) {
+  const std::string text = field(path, key);
   std::uint64_t kibibytes = 0;
   std::from_chars(text.data(), text.data() + text.size(), kibibytes);
   return kibibytes << 10;
@@ -38,8 +38,13 @@ std::string processor_name() {
   return name.empty() ? "unknown" : name;
 }
 
-std::uint64_t total_memory() { return memory_field("MemTotal"); }
-std::uint64_t available_memory() { return memory_field("MemAvailable"); }
+std::uint64_t total_memory() { return size_field("/proc/meminfo", "MemTotal"); }
+std::uint64_t available_memory() { return size_field("/proc/meminfo", "MemAvailable"); }
+
+std::uint64_t resident_memory() { return size_field("/proc/self/status", "VmRSS"); }
+std::uint64_t peak_memory() { return size_field("/proc/self/status", "VmHWM"); }
+
+void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
 std::filesystem::path find_program(const std::string& name) {
   const char* path = std::getenv("PATH");

@@ -13,6 +13,12 @@ std::string processor_name();
 std::uint64_t total_memory();
 std::uint64_t available_memory();
 
+/// Memory that this process has in use now, and its peak since the start or the last reset, bytes; 0 where the system
+/// does not tell.
+std::uint64_t resident_memory();
+std::uint64_t peak_memory();
+void reset_peak_memory();
+
 /// The program of this name that the shell would start; empty if there is none.
 std::filesystem::path find_program(const std::string& name);
 

@@ -43,8 +43,8 @@ class TurnedRegion final : public Region<dim> {
   /// Bounds of what lies in `box`, after x -> rotation (x - before) + after.
   static Bounds<dim> turned(const Bounds<dim>& box, const Mat<double, dim>& rotation, const Vec<double, dim>& before,
                             const Vec<double, dim>& after) {
-    const Vec<double, dim> centre = rotation * (0.5 * (box.lower + box.upper) - before) + after;
-    const Vec<double, dim> half = 0.5 * (box.upper - box.lower);
+    const Vec<double, dim> centre = rotation * (box.center() - before) + after;
+    const Vec<double, dim> half = 0.5 * box.size();
     Vec<double, dim> reach = {};
     for (int i = 0; i < dim; ++i) {
       for (int j = 0; j < dim; ++j) reach[i] += std::abs(rotation(i, j)) * half[j];

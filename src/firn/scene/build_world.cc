@@ -3,9 +3,10 @@
 #include <firn/materials/model_info.h>
 #include <firn/scene/body_region.h>
 #include <firn/scene/build_world.h>
-#include <firn/seeding/sample.h>
+#include <firn/seeding/sampling.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -55,9 +56,10 @@ WorldPlan plan_of(const Scene& scene, const Regions<dim>& regions) {
   for (const auto& region : regions) volume += region->volume();
   const ResolutionSettings& resolution = scene.resolution;
   WorldPlan plan;
-  plan.cell_size = resolution.cell_size
-                       ? *resolution.cell_size
-                       : std::pow(volume * resolution.particles_per_cell / static_cast<double>(*resolution.particles), 1.0 / dim);
+  plan.cell_size =
+      resolution.cell_size
+          ? *resolution.cell_size
+          : std::pow(volume * resolution.particles_per_cell / static_cast<double>(*resolution.particles), 1.0 / dim);
   // With a given cell size the particles per cell are asked for, with a given number of particles that number is.
   const double particles_per_volume = resolution.cell_size
                                           ? resolution.particles_per_cell / std::pow(plan.cell_size, dim)
@@ -65,19 +67,21 @@ WorldPlan plan_of(const Scene& scene, const Regions<dim>& regions) {
   for (std::size_t b = 0; b < regions.size(); ++b) {
     const double wanted = regions[b]->volume() * particles_per_volume;
     if (!(wanted < std::numeric_limits<std::int32_t>::max())) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("body \"{}\": {:.3g} particles are more than the {} that Firn can number; use larger cells",
-                              scene.bodies[b].name, wanted, std::numeric_limits<std::int32_t>::max()));
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("body \"{}\": {:.3g} particles are more than the {} that Firn can number; use larger cells",
+                      scene.bodies[b].name, wanted, std::numeric_limits<std::int32_t>::max()));
     }
     if (!(wanted >= 1)) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("body \"{}\" would get no particle: it is {:.2g} cells wide (cell size {:.3g} m); did you mean "
-                              "units = \"mm\" or smaller cells?",
-                              scene.bodies[b].name, regions[b]->bounds().largest_side() / plan.cell_size, plan.cell_size));
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("body \"{}\" would get no particle: it is {:.2g} cells wide (cell size {:.3g} m); did you mean "
+                      "units = \"mm\" or smaller cells?",
+                      scene.bodies[b].name, regions[b]->bounds().largest_side() / plan.cell_size, plan.cell_size));
     }
     const auto particles = static_cast<std::int64_t>(std::llround(wanted));
-    plan.bodies.push_back({scene.bodies[b].name, regions[b]->volume(), particles,
-                           regions[b]->bounds().largest_side() / plan.cell_size});
+    plan.bodies.push_back(
+        {scene.bodies[b].name, regions[b]->volume(), particles, regions[b]->bounds().largest_side() / plan.cell_size});
     plan.particles += particles;
   }
   return plan;
@@ -86,19 +90,21 @@ WorldPlan plan_of(const Scene& scene, const Regions<dim>& regions) {
 template <int dim>
 Samples<dim> fill(const Scene& scene, const BodySettings& body, const Region<dim>& region, const WorldPlan& plan,
                   std::size_t b) {
+  const std::string name = fmt::format("body \"{}\"", body.name);
+  if (body.fill == BodySettings::Fill::lattice) {
+    const double per_axis = std::round(std::pow(scene.resolution.particles_per_cell, 1.0 / dim));
+    return sample_lattice<dim>(region, plan.cell_size, std::max(static_cast<int>(per_axis), 1), name);
+  }
   SamplingRequest request;
   request.count = plan.bodies[b].particles;
   request.seed = scene.seed + b;
-  if (body.fill == BodySettings::Fill::lattice) {
-    return sample_lattice<dim>(region, std::pow(region.volume() / static_cast<double>(*request.count), 1.0 / dim));
-  }
-  return sample_region<dim>(region, request);
+  return sample_region<dim>(region, request, name);
 }
 
 /// Linear and angular velocity about the body's centre of mass.
 template <class Real, int dim>
-void set_velocities(World<Real, dim>& world, Particles<Real, dim>& particles, std::size_t first, const BodySettings& body,
-                    const std::vector<Vec<double, dim>>& positions) {
+void set_velocities(World<Real, dim>& world, Particles<Real, dim>& particles, std::size_t first,
+                    const BodySettings& body, const std::vector<Vec<double, dim>>& positions) {
   const Mat<double, dim> spin = spin_matrix<dim>(spin_of<dim>(body.angular_velocity));
   Vec<double, dim> centre = {};
   for (const auto& x : positions) centre += x;
@@ -129,8 +135,12 @@ Collider<dim> collider_of(const ColliderSettings& settings) {
     case ColliderSettings::Shape::half_space:
       collider.shape = std::make_shared<HalfSpace<dim>>(cut<dim>(settings.normal));
       break;
-    case ColliderSettings::Shape::box: collider.shape = std::make_shared<Box<dim>>(0.5 * cut<dim>(settings.size)); break;
-    case ColliderSettings::Shape::sphere: collider.shape = std::make_shared<Sphere<dim>>(settings.radius); break;
+    case ColliderSettings::Shape::box:
+      collider.shape = std::make_shared<Box<dim>>(0.5 * cut<dim>(settings.size));
+      break;
+    case ColliderSettings::Shape::sphere:
+      collider.shape = std::make_shared<Sphere<dim>>(settings.radius);
+      break;
   }
   collider.motion = {cut<dim>(settings.position), rotation_of<dim>(settings.rotation), cut<dim>(settings.velocity),
                      spin_of<dim>(settings.angular_velocity)};
@@ -184,8 +194,8 @@ BuiltWorld<Real, dim> build_world(const Scene& scene) {
       if (material.name != body.material) continue;
       const std::size_t first = material.particles.size();
       material.particles.append(samples.positions, plan.cell_size, world.transfer.kernel, world.grid.period(),
-                                material.parameters.density * samples.volume_per_sample, samples.volume_per_sample, next_id,
-                                static_cast<std::uint32_t>(b));
+                                material.parameters.density * samples.volume_per_sample, samples.volume_per_sample,
+                                next_id, static_cast<std::uint32_t>(b));
       set_velocities(world, material.particles, first, body, samples.positions);
     }
     plan.bodies[b].particles = static_cast<std::int64_t>(samples.positions.size());

@@ -36,6 +36,23 @@ ColumnStore::Buffer ColumnStore::allocate(int element_bytes) const {
   return Buffer(memory);
 }
 
+ColumnStore::ColumnStore(const ColumnStore& other) : size_(other.size_), capacity_(other.size_) {
+  for (const Column& column : other.columns_) {
+    Column copy{column.spec, {}};
+    for (const Buffer& component : column.components) {
+      copy.components.push_back(allocate(column.spec.element_bytes));
+      std::memcpy(copy.components.back().get(), component.get(),
+                  size_ * static_cast<std::size_t>(column.spec.element_bytes));
+    }
+    columns_.push_back(std::move(copy));
+  }
+}
+
+ColumnStore& ColumnStore::operator=(const ColumnStore& other) {
+  if (this != &other) *this = ColumnStore(other);
+  return *this;
+}
+
 int ColumnStore::add(ColumnSpec spec) {
   Column column;
   for (int c = 0; c < spec.components; ++c) column.components.push_back(allocate(spec.element_bytes));
@@ -78,6 +95,24 @@ void ColumnStore::reorder(std::span<const std::uint32_t> order) {
       std::swap(component, spare);
     }
   }
+}
+
+void ColumnStore::remove(std::span<const std::uint32_t> places) {
+  if (places.empty()) return;
+  std::vector<std::uint32_t> order;
+  order.reserve(size_);
+  auto removed = places.begin();
+  for (std::uint32_t i = 0; i < size_; ++i) {
+    if (removed != places.end() && *removed == i) {
+      ++removed;
+    } else {
+      order.push_back(i);
+    }
+  }
+  const std::size_t kept = order.size();
+  order.insert(order.end(), places.begin(), places.end());
+  reorder(order);
+  resize(kept);
 }
 
 std::uint64_t ColumnStore::hash() const {

@@ -26,6 +26,12 @@ class ColumnStore {
  public:
   static constexpr std::size_t kPadding = 32;
 
+  ColumnStore() = default;
+  ColumnStore(const ColumnStore& other);
+  ColumnStore(ColumnStore&&) = default;
+  ColumnStore& operator=(const ColumnStore& other);
+  ColumnStore& operator=(ColumnStore&&) = default;
+
   /// Adds a column, filled with zero bytes. Returns its number.
   int add(ColumnSpec spec);
 
@@ -35,6 +41,9 @@ class ColumnStore {
 
   /// Element i becomes what element order[i] was. order must be a permutation.
   void reorder(std::span<const std::uint32_t> order);
+
+  /// Removes the elements at these places, ascending. The others keep their order.
+  void remove(std::span<const std::uint32_t> places);
 
   int column_count() const { return static_cast<int>(columns_.size()); }
   const ColumnSpec& spec(int column) const { return columns_[static_cast<std::size_t>(column)].spec; }

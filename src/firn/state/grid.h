@@ -62,8 +62,8 @@ class Grid {
   /// Particle block whose offset o is node block g; -1 if none.
   std::int32_t particle_block_of(std::size_t g, int o) const { return lower_[g][static_cast<std::size_t>(o)]; }
 
-  /// Tile of particle block b: tile_nodes x kNodeWidth numbers. Layer 0 holds the momentum with the impulse of the step's
-  /// forces; layer 1, kept for FLIP only, the momentum before it.
+  /// Tile of particle block b: tile_nodes x kNodeWidth numbers. Layer 0 holds the momentum with the impulse of the
+  /// step's forces; layer 1, kept for FLIP only, the momentum before it.
   Real* tile(std::size_t b, int layer = 0) { return tiles_[layer].data() + b * tile_size_; }
   const Real* tile(std::size_t b, int layer = 0) const { return tiles_[layer].data() + b * tile_size_; }
 

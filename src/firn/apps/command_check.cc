@@ -1,0 +1,95 @@
+#include <firn/apps/commands.h>
+#include <firn/apps/machine.h>
+#include <firn/apps/progress.h>
+#include <firn/apps/scene_options.h>
+#include <firn/core/log.h>
+#include <firn/scene/build_world.h>
+#include <firn/simulation/simulation.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+namespace firn {
+namespace {
+
+/// Cost of a scene, found by a few steps of the same scene with few particles.
+struct Calibration {
+  double dt_cells = 0;  ///< first time step / cell size, s/m
+  std::string limit;
+  double seconds_per_particle_step = 0;
+};
+
+constexpr std::int64_t kCalibrationParticles = 20000;
+constexpr int kCalibrationSteps = 5;
+/// Columns, grid, tiles, sort space and one copy to take a frame back, as measured: bytes per particle.
+constexpr double kBytesPerParticle[2] = {400, 700};
+/// Bytes that a frame file takes per particle, compressed.
+constexpr double kFrameBytesPerParticle[2] = {50, 100};
+
+Calibration calibrate(const Scene& scene, const WorldPlan& plan) {
+  Scene small = scene;
+  small.resolution.cell_size.reset();
+  small.resolution.particles = std::min(plan.particles, kCalibrationParticles);
+  // A coarser grid would break periodic lengths of a whole number of blocks.
+  if (norm(scene.method.periodic) > 0) small = scene;
+  const LogSink sink = set_log_sink({});  // the meshes were judged once already
+  const auto simulation = Simulation::create(small);
+  Calibration calibration;
+  const auto start = std::chrono::steady_clock::now();
+  for (int step = 0; step < kCalibrationSteps; ++step) {
+    const TimeStep taken = simulation->step();
+    if (step > 0) continue;
+    calibration.dt_cells = taken.dt / simulation->plan().cell_size;
+    std::vector<std::string> names;
+    for (const MaterialSettings& material : scene.materials) names.push_back(material.name);
+    calibration.limit = taken.describe(names);
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  calibration.seconds_per_particle_step =
+      seconds / kCalibrationSteps / static_cast<double>(std::max<std::int64_t>(simulation->particle_count(), 1));
+  set_log_sink(sink);
+  return calibration;
+}
+
+void check_scene(const SceneOptions& options) {
+  const Scene scene = load(options);
+  const WorldPlan plan = plan_world(scene);
+  const Calibration calibration = calibrate(scene, plan);
+  const int precision = scene.precision == Scene::Precision::single ? 0 : 1;
+  const auto particles = static_cast<double>(plan.particles);
+  const double dt = calibration.dt_cells * plan.cell_size;
+  const double frames = std::floor(scene.end_time * scene.frame_rate) + 1;
+  const double steps = std::ceil(scene.end_time / dt);
+  const double memory = particles * kBytesPerParticle[precision];
+  fmt::print("{} is fine\n", options.file);
+  fmt::print("  cell size   {:.4g} m\n", plan.cell_size);
+  for (const WorldPlan::Body& body : plan.bodies) {
+    fmt::print("  body        {}: {} particles, {:.4g} {}, {:.1f} cells wide\n", body.name, body.particles, body.volume,
+               scene.dimension == 3 ? "m^3" : "m^2", body.width_in_cells);
+  }
+  fmt::print("  particles   {}\n", plan.particles);
+  fmt::print("  memory      {:.2f} GiB of {:.1f} GiB\n", memory / 0x1p30, static_cast<double>(total_memory()) / 0x1p30);
+  fmt::print("  disk        {:.2f} GiB for {} frames\n",
+             frames * particles * kFrameBytesPerParticle[precision] / 0x1p30, frames);
+  fmt::print("  time step   {:.2g} s at the start, by {}\n", dt, calibration.limit);
+  fmt::print("  steps       {:.0f} or more: faster or stiffer material takes shorter ones\n", steps);
+  fmt::print("  time        {} or more, pictures not counted\n",
+             duration_text(steps * particles * calibration.seconds_per_particle_step));
+  std::fflush(stdout);
+  if (memory > 0.9 * static_cast<double>(total_memory())) {
+    log_warning(fmt::format("the scene needs about {:.1f} GiB of memory and the machine has {:.1f}; use larger cells",
+                            memory / 0x1p30, static_cast<double>(total_memory()) / 0x1p30));
+  }
+}
+
+}  // namespace
+
+void add_check(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("check", "Validate a scene and estimate its cost, without running it");
+  const auto options = add_scene_options(*command);
+  command->callback([options] { check_scene(*options); });
+}
+
+}  // namespace firn

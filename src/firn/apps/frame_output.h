@@ -1,0 +1,65 @@
+#pragma once
+
+#include <firn/apps/run_folder.h>
+#include <firn/render/film.h>
+#include <firn/render/scene_view.h>
+#include <firn/simulation/simulation.h>
+
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+namespace firn {
+
+/// One accepted frame on its way to the disk.
+struct FinishedFrame {
+  Snapshot snapshot;
+  FrameReport report;
+  Totals totals;
+};
+
+/// Writes frames, the row of statistics, pictures and the film in a thread of its own, while the next frame is
+/// computed.
+class FrameOutput {
+ public:
+  FrameOutput(const Scene& scene, const RunFolder& folder);
+  /// Stops without closing the film if finish() was not called.
+  ~FrameOutput();
+  FrameOutput(const FrameOutput&) = delete;
+  FrameOutput& operator=(const FrameOutput&) = delete;
+
+  /// Hands a frame over; waits while two are still unwritten. Throws what went wrong with an earlier one.
+  void submit(FinishedFrame frame);
+
+  /// Waits for everything and closes the film. Throws what went wrong.
+  void finish();
+
+  bool has_film() const { return film_ != nullptr; }
+
+ private:
+  void work();
+  void write(const FinishedFrame& frame);
+  void draw(const FinishedFrame& frame);
+
+  struct Files;
+
+  const Scene scene_;
+  const RunFolder folder_;
+  std::unique_ptr<Files> files_;
+  std::unique_ptr<Film> film_;
+  std::optional<Camera> camera_;  // of the first picture, so that an automatic camera stands still
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<FinishedFrame> queue_;
+  bool busy_ = false, closing_ = false;
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
+
+}  // namespace firn

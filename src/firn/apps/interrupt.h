@@ -1,0 +1,11 @@
+#pragma once
+
+namespace firn {
+
+/// From now on the first SIGINT or SIGTERM only sets a flag; a second one ends the program as usual.
+void catch_interrupts();
+
+/// Whether the user has asked to stop.
+bool interrupted();
+
+}  // namespace firn

@@ -1,0 +1,260 @@
+#include <firn/core/error.h>
+#include <firn/core/log.h>
+#include <firn/integrators/step.h>
+#include <firn/materials/model_info.h>
+#include <firn/measure/output_columns.h>
+#include <firn/measure/particle_state.h>
+#include <firn/simulation/runaways.h>
+#include <firn/simulation/simulation.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <xxhash.h>
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace firn {
+namespace {
+
+constexpr int kMaxTries = 3;
+
+template <class Real, int dim>
+class SimulationOf final : public Simulation {
+ public:
+  explicit SimulationOf(const Scene& scene)
+      : Simulation(scene),
+        arena_(scene.threads > 0 ? scene.threads : static_cast<int>(tbb::task_arena::automatic)),
+        guard_(scene.limits) {
+    if (scene.threads > 0) {
+      // An arena alone does not get more threads than the machine has processors.
+      thread_limit_.emplace(
+          tbb::global_control::max_allowed_parallelism,
+          std::max<std::size_t>(static_cast<std::size_t>(scene.threads),
+                                tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
+    }
+    auto built = build_world<Real, dim>(scene_);
+    plan_ = std::move(built.plan);
+    world_ = std::make_unique<World<Real, dim>>(std::move(built.world));
+    limits_.particle_cfl = scene.limits.particle_cfl;
+    limits_.elastic_cfl = scene.limits.elastic_cfl;
+    if (scene.limits.max_dt) limits_.max_dt = *scene.limits.max_dt;
+    for (const auto& material : world_->materials) material_names_.push_back(material.name);
+    StepReport prepared;
+    arena_.execute([&] { prepared = prepare(*world_); });
+    if (prepared.failure) fail(*prepared.failure, 0);
+    report_.particles = particle_count();
+    report_.limit = "start";
+  }
+
+  double time() const override { return world_->t; }
+  std::int64_t particle_count() const override { return static_cast<std::int64_t>(world_->particle_count()); }
+  FrameReport report() const override { return report_; }
+  VerbTimes verb_times() const override { return world_->verb_times; }
+
+  TimeStep step() override {
+    TimeStep taken;
+    const auto failure = try_step(frame_time(frame_ + 1), taken);
+    if (failure) fail(*failure, taken.dt);
+    return taken;
+  }
+
+  FrameReport advance_frame() override {
+    const auto start = std::chrono::steady_clock::now();
+    keep();
+    std::optional<ParticleFailure> failure;
+    for (int attempt = 0; attempt < kMaxTries; ++attempt) {
+      if (attempt > 0) retry(*failure);
+      failure = try_frame();
+      if (!failure) {
+        report_.retries = attempt;
+        report_.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        return report_;
+      }
+      if (!kept_) break;
+    }
+    const std::string text = describe(*failure, report_.dt);
+    if (kept_) restore();
+    throw Error(ErrorKind::numerical, text);
+  }
+
+  Snapshot snapshot() const override {
+    Snapshot snapshot;
+    snapshot.dimension = dim;
+    snapshot.time = world_->t;
+    snapshot.cell_size = world_->grid.dx();
+    for (const BodySettings& body : scene_.bodies) snapshot.bodies.push_back(body.name);
+    double smallest = 0;
+    for (const WorldPlan::Body& body : plan_.bodies) {
+      const double each = body.volume / static_cast<double>(body.particles);
+      smallest = smallest == 0 ? each : std::min(smallest, each);
+    }
+    snapshot.particle_spacing = std::pow(smallest, 1.0 / dim);
+    arena_.execute([&] {
+      for (std::size_t m = 0; m < world_->materials.size(); ++m) {
+        const auto& material = world_->materials[m];
+        const MaterialSettings& settings = scene_.materials[m];
+        append_to_snapshot<Real, dim>(snapshot, material.particles, material.model, material.parameters,
+                                      {material.name, settings.model, settings.preset}, world_->grid.dx(),
+                                      world_->transfer.kernel);
+      }
+    });
+    return snapshot;
+  }
+
+  Totals totals() const override {
+    Totals sum;
+    arena_.execute([&] {
+      for (const auto& material : world_->materials) {
+        sum += measure_totals<Real, dim>(
+            material.particles, material.model, material.parameters,
+            {world_->grid.dx(), world_->transfer.kernel, world_->transfer.affine, world_->gravity});
+      }
+    });
+    return sum;
+  }
+
+  std::uint64_t hash() const override {
+    const std::uint64_t clock[2] = {world_->steps, static_cast<std::uint64_t>(frame_)};
+    std::uint64_t hash = XXH64(clock, sizeof(clock), XXH64(&world_->t, sizeof(world_->t), 1));
+    for (const auto& material : world_->materials) {
+      const std::uint64_t part = material.particles.store().hash();
+      hash = XXH64(&part, sizeof(part), hash);
+    }
+    return hash;
+  }
+
+ private:
+  /// What a frame can be taken back to.
+  struct Kept {
+    std::vector<Particles<Real, dim>> particles;
+    std::vector<std::vector<std::uint32_t>> movers;
+    std::vector<std::pair<double, double>> speeds;
+    double t, max_collider_speed;
+    std::uint64_t steps;
+    std::int64_t parked;
+  };
+
+  void keep() {
+    if (scene_.rollback == Scene::Rollback::off) return;
+    kept_.emplace();
+    for (const auto& material : world_->materials) {
+      kept_->particles.push_back(material.particles);
+      kept_->movers.push_back(material.movers);
+      kept_->speeds.emplace_back(material.max_speed, material.wave_speed);
+    }
+    kept_->t = world_->t;
+    kept_->max_collider_speed = world_->max_collider_speed;
+    kept_->steps = world_->steps;
+    kept_->parked = guard_.parked();
+  }
+
+  void restore() {
+    for (std::size_t m = 0; m < world_->materials.size(); ++m) {
+      auto& material = world_->materials[m];
+      material.particles = kept_->particles[m];
+      material.movers = kept_->movers[m];
+      std::tie(material.max_speed, material.wave_speed) = kept_->speeds[m];
+    }
+    world_->t = kept_->t;
+    world_->max_collider_speed = kept_->max_collider_speed;
+    world_->steps = kept_->steps;
+    guard_.restore(kept_->parked);
+  }
+
+  void retry(const ParticleFailure& failure) {
+    log_warning(
+        fmt::format("{}; taking frame {} back and halving the time step", describe(failure, report_.dt), frame_ + 1));
+    restore();
+    limits_.particle_cfl /= 2;
+    limits_.elastic_cfl /= 2;
+    limits_.max_dt /= 2;
+  }
+
+  std::optional<ParticleFailure> try_step(double until, TimeStep& taken) {
+    StepReport report;
+    arena_.execute([&] {
+      taken = choose_time_step(*world_, limits_, until - world_->t);
+      report = step_explicit(*world_, taken.dt);
+      if (!report.failure) guard_.park_fast(*world_);
+    });
+    return report.failure;
+  }
+
+  std::optional<ParticleFailure> try_frame() {
+    const double until = frame_time(frame_ + 1);
+    report_ = {};
+    report_.dt = std::numeric_limits<double>::infinity();
+    while (world_->t < until) {
+      TimeStep taken;
+      const auto failure = try_step(until, taken);
+      ++report_.steps;
+      if (failure || taken.dt < report_.dt) {
+        report_.dt = taken.dt;
+        report_.limit = taken.describe(material_names_);
+      }
+      if (failure) return failure;
+      // The last step of a frame lands on its time: what is left is round-off.
+      if (until - world_->t < 1e-9 * taken.dt) world_->t = until;
+    }
+    guard_.park_far(*world_);
+    ++frame_;
+    report_.frame = frame_;
+    report_.time = world_->t;
+    report_.particles = particle_count();
+    report_.parked = guard_.parked();
+    return std::nullopt;
+  }
+
+  std::string describe(const ParticleFailure& failure, double dt) const {
+    const auto& material = world_->materials[failure.material];
+    const auto& particles = material.particles;
+    const ParticleState<dim> state = particle_state(particles, failure.particle);
+    Vec<double, dim> v;
+    for (int i = 0; i < dim; ++i) v[i] = particles.real(Field::velocity, i)[failure.particle];
+    const auto x = particles.position(failure.particle, world_->grid.dx(), world_->transfer.kernel);
+    return fmt::format(
+        "step {} at t = {:.6g} s with dt = {:.3g} s: particle {} of \"{}\" cannot go on, {}; x = ({:.4g}) m, speed "
+        "{:.4g} m/s, "
+        "F = ({:.4g}), J = {:.4g}. The likely cause is a time step too long for what happens there: lower "
+        "limits.elastic_cfl or limits.max_dt, use a smaller cell size, or soften material.{}",
+        world_->steps, world_->t, dt, failure.id, material.name, failure.cause, fmt::join(x.e, x.e + dim, ", "),
+        norm(v), fmt::join(state.F.e, state.F.e + dim * dim, ", "), determinant(state.F), material.name);
+  }
+
+  [[noreturn]] void fail(const ParticleFailure& failure, double dt) const {
+    throw Error(ErrorKind::numerical, describe(failure, dt));
+  }
+
+  mutable tbb::task_arena arena_;
+  std::optional<tbb::global_control> thread_limit_;
+  std::unique_ptr<World<Real, dim>> world_;
+  TimeStepLimits limits_;
+  RunawayGuard<Real, dim> guard_;
+  std::vector<std::string> material_names_;
+  std::optional<Kept> kept_;
+  FrameReport report_;
+};
+
+}  // namespace
+
+std::int64_t Simulation::frame_count() const {
+  // A frame that would come a rounding error after the end still belongs to the run.
+  return static_cast<std::int64_t>(std::floor(scene_.end_time * scene_.frame_rate * (1 + 1e-12))) + 1;
+}
+
+std::unique_ptr<Simulation> Simulation::create(const Scene& scene) {
+  const bool single = scene.precision == Scene::Precision::single;
+  if (scene.dimension == 2) {
+    if (single) return std::make_unique<SimulationOf<float, 2>>(scene);
+    return std::make_unique<SimulationOf<double, 2>>(scene);
+  }
+  if (single) return std::make_unique<SimulationOf<float, 3>>(scene);
+  return std::make_unique<SimulationOf<double, 3>>(scene);
+}
+
+}  // namespace firn

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <firn/integrators/time_step.h>
+#include <firn/measure/totals.h>
+#include <firn/scene/build_world.h>
+#include <firn/scene/settings.h>
+#include <firn/state/snapshot.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace firn {
+
+/// What one frame came to.
+struct FrameReport {
+  std::int64_t frame = 1;  ///< frame 1 is t = 0
+  double time = 0;         ///< s
+  std::int64_t steps = 0;  ///< in this frame
+  double dt = 0;           ///< of its shortest step, s
+  std::string limit;       ///< what bounded that step, with the material: elastic_wave of "snow"
+  std::int64_t particles = 0;
+  std::int64_t parked = 0;  ///< since the start
+  int retries = 0;          ///< times that the frame was taken back and computed with smaller steps
+  double wall_seconds = 0;
+};
+
+/// A scene being simulated, whatever its dimension and precision: the one face of the library that the command line,
+/// the viewer and end-to-end tests use.
+class Simulation {
+ public:
+  virtual ~Simulation() = default;
+
+  /// Builds the scene's world: reads meshes, places particles. Error as load_scene and build_world.
+  static std::unique_ptr<Simulation> create(const Scene& scene);
+
+  const Scene& scene() const { return scene_; }
+  const WorldPlan& plan() const { return plan_; }
+
+  std::int64_t frame() const { return frame_; }
+  /// Number of frames of the whole run: frame 1 at t = 0 and the last at end_time or just before.
+  std::int64_t frame_count() const;
+  double frame_time(std::int64_t frame) const { return static_cast<double>(frame - 1) / scene_.frame_rate; }
+
+  virtual double time() const = 0;
+  virtual std::int64_t particle_count() const = 0;
+
+  /// One step, as long as the limits allow but not beyond the next frame. Error(numerical) with a report if a particle
+  /// fails.
+  virtual TimeStep step() = 0;
+
+  /// Steps to the next frame. If a particle fails, the frame is taken back, the limits are halved and it is computed
+  /// again; after three tries Error(numerical) tells step, time, particle, its F, J and speed, the likely cause and
+  /// what to change. The state is then that of the last good frame (rollback = "memory").
+  virtual FrameReport advance_frame() = 0;
+
+  /// The report of the frame that the simulation stands at.
+  virtual FrameReport report() const = 0;
+
+  virtual Snapshot snapshot() const = 0;
+  virtual Totals totals() const = 0;
+
+  /// Seconds spent in each verb of the step since the start.
+  virtual VerbTimes verb_times() const = 0;
+
+  /// Hash of every particle column and of the clock: equal for equal bits.
+  virtual std::uint64_t hash() const = 0;
+
+ protected:
+  explicit Simulation(const Scene& scene) : scene_(scene) {}
+
+  Scene scene_;
+  WorldPlan plan_;
+  std::int64_t frame_ = 1;
+};
+
+}  // namespace firn
