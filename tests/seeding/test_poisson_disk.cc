@@ -17,7 +17,7 @@ namespace {
 constexpr std::int64_t kNoBudget = std::numeric_limits<std::int32_t>::max();
 
 /// FNV-1a over the coordinates: a change means that every scene starts from other particles.
-constexpr std::uint64_t kHashOfSeed7 = 3245838454011764220u;
+constexpr std::uint64_t kHashOfSeed7 = 1351345730094355681u;
 
 /// Nearest samples by a sorted table of cells of size `cell`: shares no code with the sampler.
 template <int dim>

@@ -38,7 +38,7 @@ SamplingRequest with_count(std::int64_t count) {
 }
 
 TriangleMesh hollow_sphere() {
-  TriangleMesh mesh = sphere_mesh(1, 4), cavity = sphere_mesh(0.6, 4);
+  TriangleMesh mesh = sphere_mesh(1, 3), cavity = sphere_mesh(0.6, 3);
   flip(cavity);
   append(mesh, cavity);
   return mesh;
@@ -62,8 +62,9 @@ void expect_filled(const TriangleMesh& mesh, const std::string& name) {
   EXPECT_NEAR(samples.volume_per_sample * static_cast<double>(samples.positions.size()) / prepared.report.volume, 1,
               1e-12)
       << name;
-  const WindingNumber exact(prepared.mesh, 1e9);
-  for (const Vec3d& x : samples.positions) ASSERT_GT(exact(x), 0.5) << name;
+  // Without the look-up grid that the sampler relied on; far from the surface any accuracy tells inside from outside.
+  const WindingNumber winding(prepared.mesh);
+  for (const Vec3d& x : samples.positions) ASSERT_GT(winding(x), 0.5) << name;
 }
 
 TEST(MeshSampling, FillsClosedMeshesAndNothingElse) {

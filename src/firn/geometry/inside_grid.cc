@@ -20,8 +20,9 @@ InsideGrid<dim>::InsideGrid(const Bounds<dim>& bounds, int cells) {
   cell_ = bounds.largest_side() / cells;
   std::size_t total = 1;
   for (int d = 0; d < dim; ++d) {
-    // One and a half cells of margin: the outermost cells touch nothing, and faces along the grid lie inside cells.
-    lower_[d] = bounds.lower[d] - 1.5 * cell_;
+    // More than a cell of margin: the outermost cells touch nothing. Not a multiple of half a cell, so that faces along
+    // the grid go neither between cells nor through their centres.
+    lower_[d] = bounds.lower[d] - 1.37 * cell_;
     count_[d] = static_cast<int>(std::ceil(size[d] / cell_)) + 3;
     total *= static_cast<std::size_t>(count_[d]);
   }
@@ -82,13 +83,13 @@ void InsideGrid<dim>::for_each_cell(const Bounds<dim>& range, const Visit& visit
 }
 
 template <int dim>
-void InsideGrid<dim>::mark_boundary(const Bounds<dim>& range, const Touches& touches) {
+void InsideGrid<dim>::mark_boundary(const Bounds<dim>& range, const Touches& touches, const Found& found) {
   const auto slack = constant_vector<double, dim>(kSlack * cell_);
-  mark_block(index_of(range.lower - slack), index_of(range.upper + slack), touches);
+  mark_block(index_of(range.lower - slack), index_of(range.upper + slack), touches, found);
 }
 
 template <int dim>
-void InsideGrid<dim>::mark_block(const Index& first, const Index& last, const Touches& touches) {
+void InsideGrid<dim>::mark_block(const Index& first, const Index& last, const Touches& touches, const Found& found) {
   Bounds<dim> box;
   int longest = 0;
   for (int d = 0; d < dim; ++d) {
@@ -99,6 +100,7 @@ void InsideGrid<dim>::mark_block(const Index& first, const Index& last, const To
   if (!touches(box)) return;
   if (first[longest] == last[longest]) {
     kinds_[flat(first)] = Kind::boundary;
+    if (found) found(flat(first));
     return;
   }
   // Halving blocks makes the work proportional to the cells on the surface, not to those in the range: one large
@@ -106,8 +108,8 @@ void InsideGrid<dim>::mark_block(const Index& first, const Index& last, const To
   Index lower_last = last, upper_first = first;
   lower_last[longest] = first[longest] + (last[longest] - first[longest]) / 2;
   upper_first[longest] = lower_last[longest] + 1;
-  mark_block(first, lower_last, touches);
-  mark_block(upper_first, last, touches);
+  mark_block(first, lower_last, touches, found);
+  mark_block(upper_first, last, touches, found);
 }
 
 template <int dim>
@@ -117,15 +119,11 @@ void InsideGrid<dim>::fill_connected(std::size_t start, Kind kind) {
   while (!front.empty()) {
     const std::size_t cell = front.back();
     front.pop_back();
-    const Index i = unflat(cell);
     for (int side = 0; side < 2 * dim; ++side) {
-      Index j = i;
-      j[side / 2] += side % 2 == 0 ? -1 : 1;
-      if (j[side / 2] < 0 || j[side / 2] >= count_[side / 2]) continue;
-      const std::size_t neighbour = flat(j);
-      if (kinds_[neighbour] != Kind::unknown) continue;
-      kinds_[neighbour] = kind;
-      front.push_back(neighbour);
+      const std::size_t next = neighbour(cell, side);
+      if (next == kNoCell || kinds_[next] != Kind::unknown) continue;
+      kinds_[next] = kind;
+      front.push_back(next);
     }
   }
 }
@@ -145,14 +143,22 @@ void InsideGrid<dim>::decide(const std::function<double(const Vec<double, dim>&)
 }
 
 template <int dim>
-typename InsideGrid<dim>::Kind InsideGrid<dim>::at(const Vec<double, dim>& x) const {
+std::size_t InsideGrid<dim>::cell_of(const Vec<double, dim>& x) const {
   Index i;
   for (int d = 0; d < dim; ++d) {
     const double cell = (x[d] - lower_[d]) / cell_;
-    if (!(cell >= 0) || !(cell < count_[d])) return Kind::outside;
+    if (!(cell >= 0) || !(cell < count_[d])) return kNoCell;
     i[d] = static_cast<int>(cell);
   }
-  return kinds_[flat(i)];
+  return flat(i);
+}
+
+template <int dim>
+std::size_t InsideGrid<dim>::neighbour(std::size_t cell, int side) const {
+  Index i = unflat(cell);
+  const int axis = side / 2;
+  i[axis] += side % 2 == 0 ? -1 : 1;
+  return i[axis] < 0 || i[axis] >= count_[axis] ? kNoCell : flat(i);
 }
 
 template <int dim>

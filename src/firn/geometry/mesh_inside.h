@@ -1,6 +1,7 @@
 #pragma once
 
 #include <firn/geometry/inside_grid.h>
+#include <firn/geometry/local_winding.h>
 #include <firn/geometry/mesh_report.h>
 #include <firn/geometry/winding_number.h>
 
@@ -11,12 +12,15 @@ namespace firn {
 /// of them.
 class MeshInside {
  public:
-  /// Expects a mesh from prepare_mesh(). `cells`: of the look-up grid along the longest side.
+  /// Expects a mesh from prepare_mesh(). `cells`: of the look-up grid along the longest side (at most 48 are used for
+  /// an open surface).
   explicit MeshInside(const TriangleMesh& mesh, int cells = 96);
 
   bool contains(const Vec3d& x) const;
   /// False without much work for most points outside; true says nothing.
-  bool may_contain(const Vec3d& x) const { return grid_.at(x) != InsideGrid<3>::Kind::outside; }
+  bool may_contain(const Vec3d& x) const {
+    return local_.empty() ? grid_.at(x) != InsideGrid<3>::Kind::outside : contains(x);
+  }
   /// False only if no point of the box is inside.
   bool may_overlap(const Bounds<3>& box) const { return grid_.may_overlap(box); }
 
@@ -30,9 +34,12 @@ class MeshInside {
   bool has_inverted_parts() const { return smallest_winding_ < -0.5; }
 
  private:
+  void build_grid(const TriangleMesh& mesh);
+
   MeshReport report_;
   WindingNumber winding_;
   InsideGrid<3> grid_;
+  LocalWinding local_;  ///< empty if the surface has no whole winding numbers
   double volume_ = 0;
   double largest_winding_ = 0, smallest_winding_ = 0;  ///< among the cells that the surface does not touch
 };

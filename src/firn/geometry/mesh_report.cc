@@ -43,6 +43,7 @@ void inspect_edges(const TriangleMesh& mesh, MeshReport& report) {
       ++end;
     }
     const std::size_t uses = end - begin;
+    if (2 * ascending != uses) ++report.unbalanced_edges;
     if (uses == 1) add(report.boundary, mesh, sides[begin]);
     if (uses > 2) add(report.non_manifold, mesh, sides[begin]);
     if (uses == 2 && ascending != 1) add(report.mixed, mesh, sides[begin]);

@@ -30,7 +30,11 @@ struct MeshReport {
   MeshEdges non_manifold;      ///< used by more than two triangles
   MeshEdges mixed;             ///< two triangles run along it in the same direction: their outsides differ
 
+  std::size_t unbalanced_edges = 0;  ///< used more often in one direction than in the other
+
   bool is_closed() const { return boundary.count == 0; }
+  /// Whether the winding number is a whole number everywhere off the surface, and the divergence theorem holds.
+  bool has_whole_winding_numbers() const { return unbalanced_edges == 0; }
 };
 
 /// Expects a mesh after clean(): vertices at the same position count as different ones here.

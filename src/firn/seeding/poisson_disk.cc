@@ -4,6 +4,7 @@
 #include <firn/seeding/sample_grid.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace firn {
@@ -14,6 +15,8 @@ constexpr int kCandidates = 30;
 /// In radii. No point of a filled region is farther from its nearest sample (measured: 1.16), so farther ones are in a
 /// part that the front has not reached.
 constexpr double kUnreached = 1.25;
+/// Cells of a row that are skipped at once where the region is far.
+constexpr std::int32_t kRun = 16;
 
 template <int dim>
 class Sampler {
@@ -27,22 +30,30 @@ class Sampler {
         grid_(bounds_, radius) {}
 
   std::vector<Vec<double, dim>> run() {
-    typename SampleGrid<dim>::Index i = {};
+    const typename SampleGrid<dim>::Index count = grid_.count();
+    typename SampleGrid<dim>::Index row = {};
     while (true) {
-      start_in_cell(i);
-      int d = 0;
-      while (d < dim && ++i[d] == grid_.count()[d]) i[d++] = 0;
+      for (row[0] = 0; row[0] < count[0]; row[0] += kRun) start_in_cells(row, std::min(row[0] + kRun, count[0]));
+      int d = 1;
+      while (d < dim && ++row[d] == count[d]) row[d++] = 0;
       if (d == dim) return std::move(samples_);
     }
   }
 
  private:
+  /// Lets fronts start in the cells of a row from `first` to before `end`.
+  void start_in_cells(const typename SampleGrid<dim>::Index& first, std::int32_t end) {
+    typename SampleGrid<dim>::Index i = first;
+    i[0] = end - 1;
+    if (!region_.may_overlap({grid_.cell_bounds(first).lower, grid_.cell_bounds(i).upper})) return;
+    for (i[0] = first[0]; i[0] < end; ++i[0]) start_in_cell(i);
+  }
+
   /// Lets a front start in this cell if no sample is near.
   void start_in_cell(const typename SampleGrid<dim>::Index& i) {
     if (grid_.is_occupied(i)) return;
     const Bounds<dim> cell = grid_.cell_bounds(i);
     if (grid_.find_neighbour(cell.center(), kUnreached * radius_, samples_) >= 0 || !region_.may_overlap(cell)) return;
-    blockers_.clear();
     for (int k = 0; k < kCandidates; ++k) {
       Vec<double, dim> x;
       for (int d = 0; d < dim; ++d) x[d] = cell.lower[d] + random_.uniform() * (cell.upper[d] - cell.lower[d]);
@@ -58,7 +69,7 @@ class Sampler {
     while (!active_.empty()) {
       // A copy, because accept() may move the samples.
       const Vec<double, dim> center = samples_[static_cast<std::size_t>(active_.back())];
-      blockers_.clear();
+      forget_far_blockers(center);
       bool found = false;
       for (int k = 0; k < kCandidates && !found; ++k) found = accept(center + shell_vector());
       if (!found) active_.pop_back();
@@ -69,8 +80,10 @@ class Sampler {
   /// make the bits depend on the mathematics library.
   Vec<double, dim> shell_vector() {
     while (true) {
+      // Steps of 2 millionths of the radius, so that one draw is enough for all components.
+      std::uint64_t bits = random_.bits();
       Vec<double, dim> v;
-      for (int d = 0; d < dim; ++d) v[d] = 4 * random_.uniform() - 2;
+      for (int d = 0; d < dim; ++d, bits >>= 21) v[d] = (static_cast<double>(bits & 0x1fffff) + 0.5) * 0x1p-19 - 2;
       const double squared = dot(v, v);
       if (squared >= 1 && squared < 4) return radius_ * v;
     }
@@ -95,13 +108,23 @@ class Sampler {
     return true;
   }
 
-  /// Candidates around one sample fall to the same few neighbours, so those are tried before the grid is searched.
-  bool is_blocked(const Vec<double, dim>& x) const {
-    for (const Vec<double, dim>& blocker : blockers_) {
-      const Vec<double, dim> offset = x - blocker;
-      if (dot(offset, offset) < radius_ * radius_) return true;
+  /// Candidates around one sample fall to the same few neighbours, so those that were found before are tried before the
+  /// grid is searched, the successful ones first.
+  bool is_blocked(const Vec<double, dim>& x) {
+    for (std::size_t i = 0; i < blockers_.size(); ++i) {
+      const Vec<double, dim> offset = x - blockers_[i];
+      if (dot(offset, offset) >= radius_ * radius_) continue;
+      std::swap(blockers_[i], blockers_[i / 2]);
+      return true;
     }
     return false;
+  }
+
+  void forget_far_blockers(const Vec<double, dim>& center) {
+    std::erase_if(blockers_, [&](const Vec<double, dim>& blocker) {
+      const Vec<double, dim> offset = blocker - center;
+      return dot(offset, offset) >= 9 * radius_ * radius_;
+    });
   }
 
   bool has_neighbour(const Vec<double, dim>& x) {

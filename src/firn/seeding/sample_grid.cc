@@ -40,11 +40,12 @@ SampleGrid<dim>::SampleGrid(const Bounds<dim>& bounds, double radius)
   const int width = 2 * kReach + 1;
   std::vector<std::pair<int, Neighbour>> sorted;
   for (int n = 0; n < (dim == 2 ? width * width : width * width * width); ++n) {
-    Neighbour neighbour;
+    Neighbour neighbour = {};
     int rest = n, squared = 0;
     for (int d = 0; d < dim; ++d) {
       const int offset = rest % width - kReach;
-      neighbour.step[d] = static_cast<std::int8_t>(offset + kReach);
+      neighbour.step[d] = offset;
+      neighbour.offset += offset * (1 << (kBlockBits * d));
       squared += offset * offset;
       rest /= width;
     }
@@ -110,28 +111,38 @@ void SampleGrid<dim>::insert(const Vec<double, dim>& x, std::int32_t sample) {
 template <int dim>
 std::int32_t SampleGrid<dim>::find_neighbour(const Vec<double, dim>& x, double distance,
                                              const std::vector<Vec<double, dim>>& samples) const {
-  constexpr int kWidth = 2 * kReach + 1;
   const Index i = index_of(x);
-  std::size_t block[dim][kWidth], cell[dim][kWidth];
+  bool in_one_block = true;
+  std::size_t block = 0, cell = 0;
   for (int d = 0; d < dim; ++d) {
-    for (int k = 0; k < kWidth; ++k) {
-      block[d][k] = block_part(i[d] + k - kReach, d);
-      cell[d][k] = cell_part(i[d] + k - kReach, d);
-    }
+    const std::int32_t within = i[d] & kBlockMask;
+    in_one_block = in_one_block && within >= kReach && within <= kBlockMask - kReach;
+    block += block_part(i[d], d);
+    cell += cell_part(i[d], d);
   }
   const double squared = distance * distance;
+  const auto is_close = [&](std::int32_t sample) {
+    if (sample < 0) return false;
+    const Vec<double, dim> offset = x - samples[static_cast<std::size_t>(sample)];
+    return dot(offset, offset) < squared;
+  };
+  if (in_one_block) {
+    if (blocks_[block] < 0) return kNone;
+    const std::int32_t* center = cells_.data() + static_cast<std::size_t>(blocks_[block]) * kBlockCells + cell;
+    for (const Neighbour& neighbour : neighbours_) {
+      if (is_close(center[neighbour.offset])) return center[neighbour.offset];
+    }
+    return kNone;
+  }
   for (const Neighbour& neighbour : neighbours_) {
     std::size_t b = 0, c = 0;
     for (int d = 0; d < dim; ++d) {
-      b += block[d][neighbour.step[d]];
-      c += cell[d][neighbour.step[d]];
+      b += block_part(i[d] + neighbour.step[d], d);
+      c += cell_part(i[d] + neighbour.step[d], d);
     }
-    const std::int32_t known = blocks_[b];
-    if (known < 0) continue;
-    const std::int32_t sample = cells_[static_cast<std::size_t>(known) * kBlockCells + c];
-    if (sample < 0) continue;
-    const Vec<double, dim> offset = x - samples[static_cast<std::size_t>(sample)];
-    if (dot(offset, offset) < squared) return sample;
+    if (blocks_[b] < 0) continue;
+    const std::int32_t sample = cells_[static_cast<std::size_t>(blocks_[b]) * kBlockCells + c];
+    if (is_close(sample)) return sample;
   }
   return kNone;
 }

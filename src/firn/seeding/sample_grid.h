@@ -9,7 +9,7 @@
 namespace firn {
 
 /// Which sample lies in which cell of a grid whose cells (radius / sqrt(dim)) are too small for two samples. Cells live
-/// in blocks of 8^dim that are made when a sample comes, so that a thin region in a large box stays cheap.
+/// in blocks of 32^dim that are made when a sample comes, so that a thin region in a large box stays cheap.
 template <int dim>
 class SampleGrid {
  public:
@@ -35,14 +35,15 @@ class SampleGrid {
                               const std::vector<Vec<double, dim>>& samples) const;
 
  private:
-  static constexpr int kBlockBits = 3;
+  static constexpr int kBlockBits = 5;
   static constexpr std::int32_t kBlockMask = (1 << kBlockBits) - 1;
   static constexpr std::size_t kBlockCells = std::size_t(1) << (kBlockBits * dim);
   static constexpr int kReach =
       2;  ///< a sample within radius is at most this many cells away: radius = sqrt(dim) cells
 
   struct Neighbour {
-    std::int8_t step[dim];  ///< 0 .. 2 kReach: offset + kReach
+    std::int32_t step[dim];     ///< in cells, -kReach .. kReach
+    std::ptrdiff_t offset = 0;  ///< in cells_, within a block
   };
 
   Index index_of(const Vec<double, dim>& x) const;  ///< with the margin
