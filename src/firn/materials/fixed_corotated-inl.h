@@ -37,7 +37,9 @@ HWY_INLINE Response<T, dim> fixed_corotated_response(T mu, T lambda, const Mat<T
   for (int i = 0; i < dim; ++i) principal[i] = mul_add((mu + mu) * (sigma[i] - T(1)), sigma[i], pressure_term);
   response.tau = rotated_diagonal(U, principal);
   response.tau_zz = pressure_term;
-  response.wave_modulus = lambda + mu + mu;
+  // Along the longest principal stretch, sigma^2 d2 psi / d sigma^2 = 2 mu sigma^2 + lambda J^2; at rest lambda + 2 mu.
+  response.wave_modulus =
+      mul_add(lambda, max(response.J * response.J, T(1)), (mu + mu) * max(sigma[0] * sigma[0], T(1)));
   return response;
 }
 

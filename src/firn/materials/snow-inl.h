@@ -95,7 +95,10 @@ struct Snow {
     for (int i = 0; i < dim * dim; ++i) Fe.e[i] = select(yielded, returned.e[i], trial.e[i]);
     history[0] = select(yielded, history[0] * clamped_away, history[0]);
     const T h = hardening_factor(history[0]);
-    return fixed_corotated_response(h * mu0, h * lambda0, s.U, sigma);
+    Response<T, dim> response = fixed_corotated_response(h * mu0, h * lambda0, s.U, sigma);
+    // The return map makes det Fe positive whatever came in; material turned inside out, or NaN, shows in Jp.
+    response.J = select(history[0] > T(0), response.J, -response.J);
+    return response;
   }
 };
 

@@ -1,0 +1,232 @@
+#include <firn/core/simd.h>
+#include <firn/materials/model_info.h>
+#include <firn/materials/update_stress.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "materials/states.h"
+
+namespace firn {
+namespace {
+
+using namespace test;
+
+constexpr std::size_t kLargestVector = 16;  // floats of AVX-512
+constexpr double kTimeStep = 0.01;
+
+/// Columns of `count` particles in random states, with recognisable values behind them.
+template <class Real, int dim>
+struct Columns {
+  static constexpr Real kCanary = Real(12345);
+  std::size_t count;
+  std::vector<std::vector<Real>> grad_v, strain, history, stress;
+
+  Columns(std::size_t particles, const ModelInfo& info, std::uint64_t seed) : count(particles) {
+    const auto make = [&](std::size_t components) {
+      return std::vector<std::vector<Real>>(components, std::vector<Real>(count + kLargestVector, kCanary));
+    };
+    grad_v = make(dim * dim), strain = make(dim * dim), history = make(info.history.size());
+    stress = make(kStressComponents<dim>);
+    Random random(seed);
+    const double size = info.name == "snow" ? 0.15 : 0.3;
+    for (std::size_t p = 0; p < count; ++p) {
+      for (std::size_t e = 0; e < dim * dim; ++e) {
+        grad_v[e][p] = static_cast<Real>(random.uniform(-5, 5));
+        strain[e][p] = static_cast<Real>((e % (dim + 1) == 0 ? 1 : 0) + random.uniform(-size, size));
+      }
+      for (auto& h : history) h[p] = static_cast<Real>(random.uniform(0.9, 1.1));
+    }
+  }
+
+  MaterialColumns<Real, dim> pointers() {
+    MaterialColumns<Real, dim> columns = {};
+    for (std::size_t e = 0; e < dim * dim; ++e)
+      columns.grad_v[e] = grad_v[e].data(), columns.strain[e] = strain[e].data();
+    for (std::size_t h = 0; h < history.size(); ++h) columns.history[h] = history[h].data();
+    for (std::size_t s = 0; s < stress.size(); ++s) columns.stress[s] = stress[s].data();
+    return columns;
+  }
+};
+
+ModelParameters parameters_of(const ModelInfo& info) {
+  ModelParameters parameters;
+  for (const Parameter& p : info.parameters) parameters.values.push_back(p.default_value);
+  if (info.name == "snow") {
+    // Room for rounding of the strain, eps / theta_c of the stress.
+    parameters.values[2] = 0.1;
+    parameters.values[3] = 0.05;
+  }
+  return parameters;
+}
+
+/// The same update on plain numbers.
+template <template <class> class Model, class Real, int dim>
+StressReport update_numbers(const ModelParameters& parameters, Columns<Real, dim>& c) {
+  const Model<double> model(parameters);
+  double modulus = 0;
+  for (std::size_t p = 0; p < c.count; ++p) {
+    Matrix<dim> F, grad_v;
+    for (std::size_t e = 0; e < dim * dim; ++e) F.e[e] = c.strain[e][p], grad_v.e[e] = c.grad_v[e][p];
+    double memory[kMaxHistoryColumns] = {};
+    for (std::size_t h = 0; h < c.history.size(); ++h) memory[h] = c.history[h][p];
+    const auto response = model.update(F, memory, grad_v, static_cast<double>(Real(kTimeStep)));
+    for (std::size_t e = 0; e < dim * dim; ++e) c.strain[e][p] = static_cast<Real>(F.e[e]);
+    for (std::size_t h = 0; h < c.history.size(); ++h) c.history[h][p] = static_cast<Real>(memory[h]);
+    const auto& t = response.tau;
+    const std::vector<double> stored =
+        dim == 3 ? std::vector{t(0, 0), t(1, 1), t(2 % dim, 2 % dim), t(0, 1), t(0, 2 % dim), t(1, 2 % dim)}
+                 : std::vector{t(0, 0), t(1, 1), response.tau_zz, t(0, 1)};
+    for (std::size_t s = 0; s < stored.size(); ++s) c.stress[s][p] = static_cast<Real>(stored[s]);
+    modulus = std::max(modulus, response.wave_modulus);
+  }
+  return {std::sqrt(modulus / parameters.density), StressReport::kNone};
+}
+
+template <class Real, int dim, template <class> class... Models>
+StressReport update_numbers(int model, hw::ModelList<Models...>, const ModelParameters& parameters,
+                            Columns<Real, dim>& c) {
+  using Function = StressReport (*)(const ModelParameters&, Columns<Real, dim>&);
+  static constexpr std::array<Function, sizeof...(Models)> kFunctions = {&update_numbers<Models, Real, dim>...};
+  return kFunctions[static_cast<std::size_t>(model)](parameters, c);
+}
+
+template <class Real>
+double relative_difference(const std::vector<std::vector<Real>>& a, const std::vector<std::vector<Real>>& b,
+                           std::size_t count) {
+  double difference = 0, magnitude = 0;
+  for (std::size_t c = 0; c < a.size(); ++c) {
+    for (std::size_t p = 0; p < count; ++p) {
+      difference = std::max(difference, std::fabs(static_cast<double>(a[c][p]) - static_cast<double>(b[c][p])));
+      magnitude = std::max(magnitude, std::fabs(static_cast<double>(b[c][p])));
+    }
+  }
+  return magnitude > 0 ? difference / magnitude : difference;
+}
+
+class UpdateStressOnTarget : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override { select_simd_target(GetParam()); }
+  void TearDown() override { select_simd_target(available_simd_targets().back()); }
+
+  template <class Body>
+  void for_each_model(const Body& body) {
+    for (const ModelInfo& info : all_models()) {
+      SCOPED_TRACE(std::string(info.name));
+      body(info, model_number(info.name));
+    }
+  }
+
+  template <class Real, int dim>
+  void expect_numbers_and_unharmed_canaries() {
+    const double tolerance = sizeof(Real) == 4 ? 1e-5 : 1e-13;
+    for_each_model([&](const ModelInfo& info, int model) {
+      const ModelParameters parameters = parameters_of(info);
+      for (std::size_t count = 0; count <= 3 * kLargestVector; ++count) {
+        Columns<Real, dim> lanes(count, info, count), numbers = lanes;
+        const auto report = update_stress_function<Real, dim>(model)(parameters, lanes.pointers(), 0, count, kTimeStep);
+        const auto expected = update_numbers<Real, dim>(model, hw::AllModels(), parameters, numbers);
+        EXPECT_LE(relative_difference(lanes.strain, numbers.strain, count), tolerance) << count;
+        EXPECT_LE(relative_difference(lanes.history, numbers.history, count), tolerance) << count;
+        EXPECT_LE(relative_difference(lanes.stress, numbers.stress, count), tolerance) << count;
+        EXPECT_NEAR(report.wave_speed, expected.wave_speed, tolerance * expected.wave_speed);
+        EXPECT_EQ(report.failed, StressReport::kNone);
+        for (const auto* columns : {&lanes.strain, &lanes.history, &lanes.stress}) {
+          for (const auto& column : *columns) {
+            EXPECT_TRUE(std::all_of(column.begin() + static_cast<std::ptrdiff_t>(count), column.end(), [](Real x) {
+              return x == (Columns<Real, dim>::kCanary);
+            })) << count;
+          }
+        }
+      }
+    });
+  }
+
+  /// Only particles [begin, end) change, wherever vectors begin, and they get the bits that the whole range gives them.
+  template <class Real, int dim>
+  void expect_ranges_to_be_independent() {
+    for_each_model([&](const ModelInfo& info, int model) {
+      constexpr std::size_t kCount = 40;
+      const auto update = update_stress_function<Real, dim>(model);
+      const ModelParameters parameters = parameters_of(info);
+      Columns<Real, dim> whole(kCount, info, 1), parts = whole;
+      update(parameters, whole.pointers(), 0, kCount, kTimeStep);
+      for (const auto& [begin, end] : {std::pair{5, 18}, {0, 5}, {19, 40}, {18, 19}}) {
+        update(parameters, parts.pointers(), static_cast<std::size_t>(begin), static_cast<std::size_t>(end), kTimeStep);
+      }
+      EXPECT_EQ(whole.strain, parts.strain);
+      EXPECT_EQ(whole.history, parts.history);
+      EXPECT_EQ(whole.stress, parts.stress);
+    });
+  }
+
+  template <class Real, int dim>
+  void expect_failures_to_be_reported() {
+    const Real nan = std::numeric_limits<Real>::quiet_NaN(), infinity = std::numeric_limits<Real>::infinity();
+    for_each_model([&](const ModelInfo& info, int model) {
+      constexpr std::size_t kCount = 41;
+      const auto update = update_stress_function<Real, dim>(model);
+      const ModelParameters parameters = parameters_of(info);
+      const auto failed_with = [&](const auto& spoil) {
+        Columns<Real, dim> columns(kCount, info, 1);
+        spoil(columns);
+        const auto report = update(parameters, columns.pointers(), 0, kCount, kTimeStep);
+        EXPECT_TRUE(std::isfinite(report.wave_speed));
+        return report.failed;
+      };
+      for (const std::size_t p : {0u, 7u, 40u}) {
+        for (std::size_t e = 0; e < dim * dim; ++e) {
+          EXPECT_EQ(failed_with([&](auto& c) { c.strain[e][p] = nan; }), p) << e;
+          EXPECT_EQ(failed_with([&](auto& c) { c.strain[e][p] = infinity; }), p) << e;
+          EXPECT_EQ(failed_with([&](auto& c) { c.grad_v[e][p] = nan; }), p) << e;
+          EXPECT_EQ(failed_with([&](auto& c) { c.grad_v[e][p] = -infinity; }), p) << e;
+        }
+        for (std::size_t h = 0; h < info.history.size(); ++h) {
+          EXPECT_EQ(failed_with([&](auto& c) { c.history[h][p] = nan; }), p) << info.history[h].name;
+        }
+        EXPECT_EQ(failed_with([&](auto& c) { c.strain[0][p] = c.strain[0][40] = nan; }), p) << "the first one";
+        // Turned inside out, or flat.
+        const bool bears_it = info.name == "fixed_corotated";
+        for (const Real stretch : {Real(-0.9), Real(0)}) {
+          const std::size_t failed = failed_with([&](auto& c) {
+            for (std::size_t e = 0; e < dim * dim; ++e) {
+              c.grad_v[e][p] = 0;
+              c.strain[e][p] = e == 0 ? stretch : e % (dim + 1) == 0 ? Real(1) : Real(0);
+            }
+          });
+          EXPECT_EQ(failed, bears_it ? StressReport::kNone : p) << stretch;
+        }
+      }
+    });
+  }
+};
+
+TEST_P(UpdateStressOnTarget, LanesAgreeWithNumbersForEveryCount) {
+  expect_numbers_and_unharmed_canaries<float, 2>();
+  expect_numbers_and_unharmed_canaries<float, 3>();
+  expect_numbers_and_unharmed_canaries<double, 2>();
+  expect_numbers_and_unharmed_canaries<double, 3>();
+}
+
+TEST_P(UpdateStressOnTarget, RangesAreIndependent) {
+  expect_ranges_to_be_independent<float, 2>();
+  expect_ranges_to_be_independent<float, 3>();
+  expect_ranges_to_be_independent<double, 2>();
+  expect_ranges_to_be_independent<double, 3>();
+}
+
+TEST_P(UpdateStressOnTarget, UnusableStatesAreReportedByTheirFirstIndex) {
+  expect_failures_to_be_reported<float, 2>();
+  expect_failures_to_be_reported<float, 3>();
+  expect_failures_to_be_reported<double, 2>();
+  expect_failures_to_be_reported<double, 3>();
+}
+
+INSTANTIATE_TEST_SUITE_P(Targets, UpdateStressOnTarget, testing::ValuesIn(available_simd_targets()),
+                         [](const auto& test) { return test.param; });
+
+}  // namespace
+}  // namespace firn
