@@ -1,0 +1,123 @@
+#include <firn/state/grid.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "support/random.h"
+
+namespace firn {
+namespace {
+
+/// Block indices (in blocks) wrapped onto their period.
+template <int dim>
+Index<dim> wrapped(Index<dim> block, const Period<dim>& period) {
+  for (std::size_t d = 0; d < dim; ++d) {
+    const std::int64_t blocks = period[d] / kBlockSide;
+    if (blocks > 0) block[d] = ((block[d] % blocks) + blocks) % blocks;
+  }
+  return block;
+}
+
+template <int dim>
+std::uint64_t key_of_block(const Index<dim>& block) {
+  Index<dim> cell;
+  for (std::size_t d = 0; d < dim; ++d) cell[d] = block[d] * kBlockSide;
+  return block_of_cell<dim>(cell_key<dim>(cell));
+}
+
+/// The block `offset` (bit d of the last axis first) above.
+template <int dim>
+std::uint64_t above(const Index<dim>& block, int offset, const Period<dim>& period) {
+  Index<dim> other = block;
+  for (int d = 0; d < dim; ++d) other[static_cast<std::size_t>(d)] += offset >> (dim - 1 - d) & 1;
+  return key_of_block<dim>(wrapped<dim>(other, period));
+}
+
+template <class Real, int dim>
+void expect_consistent(Kernel kernel, const Period<dim>& period, const std::set<Index<dim>>& blocks) {
+  Grid<Real, dim> grid(0.1, kernel, period);
+  grid.keep_velocity_change(true);
+  std::map<std::uint64_t, Index<dim>> by_key;
+  for (const auto& block : blocks) by_key[key_of_block<dim>(block)] = block;
+  std::vector<std::uint64_t> keys;
+  for (const auto& entry : by_key) keys.push_back(entry.first);
+  grid.activate(keys);
+
+  std::set<std::uint64_t> touched;
+  for (const auto& block : blocks) {
+    for (int o = 0; o < kReach<dim>; ++o) touched.insert(above<dim>(block, o, period));
+  }
+  const auto nodes = grid.node_blocks();
+  EXPECT_TRUE(std::equal(nodes.begin(), nodes.end(), touched.begin(), touched.end()));
+
+  std::size_t links = 0;
+  for (std::size_t b = 0; b < keys.size(); ++b) {
+    for (int o = 0; o < kReach<dim>; ++o) {
+      const auto g = static_cast<std::size_t>(grid.node_block_of(b, o));
+      ASSERT_LT(g, nodes.size());
+      EXPECT_EQ(nodes[g], (above<dim>(by_key[keys[b]], o, period)));
+      EXPECT_EQ(grid.particle_block_of(g, o), static_cast<std::int32_t>(b));
+    }
+  }
+  for (std::size_t g = 0; g < nodes.size(); ++g) {
+    for (int o = 0; o < kReach<dim>; ++o) links += grid.particle_block_of(g, o) >= 0 ? 1 : 0;
+  }
+  EXPECT_EQ(links, keys.size() * kReach<dim>);
+
+  // All memory is there: the sanitizers see writes beyond it.
+  for (std::size_t b = 0; b < keys.size(); ++b) {
+    for (const int layer : {0, 1}) std::fill_n(grid.tile(b, layer), tile_nodes<dim>(kernel) * kNodeWidth, Real(1));
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(grid.tile(b)) % (kNodeWidth * sizeof(Real)), 0u);
+  }
+  for (std::size_t g = 0; g < nodes.size(); ++g) {
+    std::fill_n(grid.nodes(g), kBlockNodes<dim> * kNodeWidth, Real(1));
+    std::fill_n(grid.velocity_change(g), kBlockNodes<dim> * kNodeWidth, Real(1));
+  }
+}
+
+template <class Real, int dim>
+void expect_consistent_everywhere() {
+  test::Random random(1);
+  for (const Kernel kernel : {Kernel::linear, Kernel::quadratic, Kernel::cubic}) {
+    for (const std::int64_t length : {0, 1, 2, 3, 7}) {
+      for (const std::size_t count : {1u, 5u, 60u}) {
+        Period<dim> period = {};
+        period[0] = length * kBlockSide;
+        period[dim - 1] = 2 * length * kBlockSide;
+        std::set<Index<dim>> blocks;
+        for (std::size_t n = 0; n < count; ++n) {
+          Index<dim> block;
+          for (auto& b : block) b = static_cast<std::int64_t>(random.next() % 8) - 4;
+          blocks.insert(wrapped<dim>(block, period));
+        }
+        expect_consistent<Real, dim>(kernel, period, blocks);
+      }
+    }
+  }
+}
+
+TEST(Grid, NodeBlocksAreThoseThatParticlesTouch) {
+  expect_consistent_everywhere<float, 2>();
+  expect_consistent_everywhere<float, 3>();
+  expect_consistent_everywhere<double, 2>();
+  expect_consistent_everywhere<double, 3>();
+}
+
+TEST(Grid, FollowsItsParticles) {
+  Grid<float, 2> grid(0.1, Kernel::quadratic, {});
+  grid.activate({key_of_block<2>({0, 0})});
+  EXPECT_EQ(grid.node_blocks().size(), 4u);
+  grid.activate({});
+  EXPECT_TRUE(grid.node_blocks().empty());
+  std::vector<std::uint64_t> two = {key_of_block<2>({0, 0}), key_of_block<2>({0, 1})};
+  std::sort(two.begin(), two.end());
+  grid.activate(two);
+  EXPECT_EQ(grid.node_blocks().size(), 6u);
+  grid.activate(two);
+  EXPECT_EQ(grid.node_blocks().size(), 6u);
+}
+
+}  // namespace
+}  // namespace firn
