@@ -45,8 +45,10 @@ struct AxisWeights {
       const T squared = offset * offset, rest_squared = rest * rest;
       w[0] = sixth * rest_squared * rest;
       w[1] = mul_add(squared, mul_add(T(S(0.5)), offset, T(S(-1))), two_thirds);
-      w[2] = mul_add(rest_squared, mul_add(T(S(0.5)), rest, T(S(-1))), two_thirds);
       w[3] = sixth * squared * offset;
+      // Not its own polynomial: 1/6 and 2/3 are rounded, and a sum that is always a little more than 1 makes momentum
+      // grow.
+      w[2] = one - (w[0] + w[1] + w[3]);
       dw[0] = T(S(-0.5)) * rest_squared;
       dw[1] = offset * mul_add(T(S(1.5)), offset, T(S(-2)));
       dw[2] = -(rest * mul_add(T(S(1.5)), rest, T(S(-2))));
