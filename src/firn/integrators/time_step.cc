@@ -30,7 +30,8 @@ template <class Real, int dim>
 TimeStep choose_time_step(const World<Real, dim>& world, const TimeStepLimits& limits, double remaining) {
   TimeStep step = choose_time_step(world, limits);
   if (!(step.dt < remaining)) return {remaining, "frame", -1};
-  step.dt = remaining / std::ceil(remaining / step.dt);
+  // Without the margin, rounding in the quotient would add a step to what divides evenly.
+  step.dt = remaining / std::ceil(remaining / step.dt * (1 - 1e-9));
   return step;
 }
 

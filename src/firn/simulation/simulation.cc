@@ -193,7 +193,8 @@ class SimulationOf final : public Simulation {
       TimeStep taken;
       const auto failure = try_step(until, taken);
       ++report_.steps;
-      if (failure || taken.dt < report_.dt) {
+      // That the frame ends is a reason only where nothing else is.
+      if (failure || report_.limit == "frame" || report_.limit.empty() || (taken.dt < report_.dt && taken.limit != "frame")) {
         report_.dt = taken.dt;
         report_.limit = taken.describe(material_names_);
       }
