@@ -53,14 +53,17 @@ constexpr std::size_t kGrain = 1 << 14;
 
 struct Mover {
   std::uint64_t key;
-  std::uint32_t particle;
-  bool operator<(const Mover& other) const { return key != other.key ? key < other.key : particle < other.particle; }
+  std::uint32_t id, particle;
+  // By id, not by previous place: which of two particles from different blocks came first along the curve depends on
+  // where the scene lies.
+  bool operator<(const Mover& other) const { return key != other.key ? key < other.key : id < other.id; }
 };
 
-/// The order that merges the particles which stayed (already sorted) with the movers, by (key, previous place). Chunks
-/// of stayers are independent: where a chunk's output begins follows from counting movers before it.
-void merge_order(const std::uint64_t* keys, std::size_t count, std::span<const std::uint32_t> movers,
-                 const std::vector<Mover>& sorted_movers, std::vector<std::uint32_t>& order) {
+/// The order that merges the particles which stayed (already sorted) with the movers, by (key, id). Chunks of stayers
+/// are independent: where a chunk's output begins follows from counting movers before it.
+void merge_order(const std::uint64_t* keys, const std::uint32_t* ids, std::size_t count,
+                 std::span<const std::uint32_t> movers, const std::vector<Mover>& sorted_movers,
+                 std::vector<std::uint32_t>& order) {
   order.resize(count);
   const auto first_stayer = [&](std::size_t from) {
     auto mover = std::lower_bound(movers.begin(), movers.end(), from);
@@ -70,7 +73,7 @@ void merge_order(const std::uint64_t* keys, std::size_t count, std::span<const s
   };
   const auto mover_position = [&](std::size_t p) {  // movers that go before stayer p
     if (p >= count) return sorted_movers.size();
-    const Mover stayer = {keys[p], static_cast<std::uint32_t>(p)};
+    const Mover stayer = {keys[p], ids[p], static_cast<std::uint32_t>(p)};
     return static_cast<std::size_t>(std::lower_bound(sorted_movers.begin(), sorted_movers.end(), stayer) -
                                     sorted_movers.begin());
   };
@@ -85,7 +88,7 @@ void merge_order(const std::uint64_t* keys, std::size_t count, std::span<const s
         ++skip;
         continue;
       }
-      const Mover stayer = {keys[p], static_cast<std::uint32_t>(p)};
+      const Mover stayer = {keys[p], ids[p], static_cast<std::uint32_t>(p)};
       while (m < sorted_movers.size() && sorted_movers[m] < stayer) order[out++] = sorted_movers[m++].particle;
       order[out++] = static_cast<std::uint32_t>(p);
     }
@@ -169,10 +172,10 @@ template <class Real, int dim>
 void Particles<Real, dim>::sort_by_cell(std::span<const std::uint32_t> movers) {
   if (movers.empty()) return;
   std::vector<Mover> sorted(movers.size());
-  for (std::size_t m = 0; m < movers.size(); ++m) sorted[m] = {cell()[movers[m]], movers[m]};
+  for (std::size_t m = 0; m < movers.size(); ++m) sorted[m] = {cell()[movers[m]], id()[movers[m]], movers[m]};
   // A total order, so the parallel sort has one result.
   tbb::parallel_sort(sorted.begin(), sorted.end());
-  merge_order(cell(), size(), movers, sorted, order_);
+  merge_order(cell(), id(), size(), movers, sorted, order_);
   store_.reorder(order_);
   find_blocks();
 }

@@ -46,7 +46,8 @@ struct HistorySpec {
   double initial_value = 0;
 };
 
-/// All particles of one material, lying by block along the Morton curve, then by cell, then in their previous order.
+/// All particles of one material, lying by block along the Morton curve, then by cell, then by id: an order
+/// that follows from the particles' states alone, and not from where the curve passes or how they got there.
 ///
 /// Positions keep their precision at any distance from the origin, because only the place inside the cell is a Real.
 template <class Real, int dim>
