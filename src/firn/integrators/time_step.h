@@ -25,8 +25,9 @@ struct TimeStep {
   std::string describe(const std::vector<std::string>& material_names) const;
 };
 
-/// The largest stable time step by the speeds of the last step. Its stability limit for APIC with quadratic kernels
-/// is 1.1 cells per step of the elastic wave, for FLIP down to 0.6.
+/// The largest time step that the limits allow at the speeds of the last step. Elastic waves become unstable beyond 1.0
+/// cells per step for APIC (mls form, one particle per cell and axis; 1.2 with more) and beyond 0.6 to 0.9 for FLIP
+/// (docs/verification.md, V41).
 template <class Real, int dim>
 TimeStep choose_time_step(const World<Real, dim>& world, const TimeStepLimits& limits);
 
