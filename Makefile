@@ -3,7 +3,7 @@ BUILD ?= build
 JOBS  ?= $(shell nproc)
 SCENE ?= scenes/snow_cube.toml
 
-.PHONY: all demo test build sanitize bench check format tidy dependencies clean
+.PHONY: all demo test build sanitize bench format tidy dependencies clean
 
 all: build
 
