@@ -61,6 +61,14 @@ TEST(Simulation, StartsWithTheBodysMassMomentumAndSpin) {
   }
 }
 
+TEST(Simulation, PeriodicLengthsAreWholeBlocksWhateverTheNumberOfParticles) {
+  const auto simulation = make(disk_scene(kJelly, "method.periodic = [1.3, 0]\n"));
+  const double blocks = 1.3 / (4 * simulation->plan().cell_size);
+  EXPECT_NEAR(blocks, std::round(blocks), 1e-9);
+  EXPECT_NEAR(simulation->plan().cell_size, std::sqrt(M_PI * 0.04 * 4 / 600), 0.004);
+  EXPECT_THROW(make(disk_scene(kJelly, "method.periodic = [1.3, 0.91]\n")), Error);
+}
+
 TEST(Simulation, SnapshotIsOrderedByIdAndHasTheDocumentedColumns) {
   const auto simulation = make(disk_scene(kJelly));
   simulation->advance_frame();
@@ -147,6 +155,10 @@ TEST(Simulation, RunawaysAreParkedCountedAndNamed) {
   const Snapshot snapshot = simulation->snapshot();
   for (std::size_t p = 0; p < snapshot.size(); ++p) EXPECT_LE(snapshot.position(p)[0], 0.1 + 1e-6);
   EXPECT_GT(simulation->advance_frame().frame, 2) << "the run goes on";
+
+  const auto none = make(disk_scene(kJelly, "limits.box = [[5, 5], [6, 6]]\n"));
+  EXPECT_EQ(none->advance_frame().particles, 0);
+  EXPECT_EQ(none->advance_frame().frame, 3) << "also with nothing left";
 
   const auto fast = make(disk_scene(kJelly, "limits.speed = 2.5\n"));
   EXPECT_GT(fast->advance_frame().parked, 0);

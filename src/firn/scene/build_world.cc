@@ -50,17 +50,39 @@ Regions<dim> regions_of(const Scene& scene) {
   return regions;
 }
 
+/// The cell size nearest to `wanted` that divides the periodic lengths into whole blocks.
+double fit_to_period(const Scene& scene, double wanted) {
+  double fitted = wanted;
+  for (int d = 0; d < scene.dimension; ++d) {
+    const double length = scene.method.periodic[d];
+    if (!(length > 0)) continue;
+    const double blocks = std::max(std::round(length / (kBlockSide * fitted)), 1.0);
+    const double cell = length / (kBlockSide * blocks);
+    if (fitted != wanted && std::abs(cell - fitted) > 1e-9 * fitted) {
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("no cell size near {:.4g} m divides all of method.periodic into whole blocks of {} cells; set "
+                      "resolution.cell_size",
+                      wanted, kBlockSide));
+    }
+    fitted = cell;
+  }
+  return fitted;
+}
+
 template <int dim>
 WorldPlan plan_of(const Scene& scene, const Regions<dim>& regions) {
   double volume = 0;
   for (const auto& region : regions) volume += region->volume();
   const ResolutionSettings& resolution = scene.resolution;
   WorldPlan plan;
-  plan.cell_size =
+  const double wanted_cell =
       resolution.cell_size
           ? *resolution.cell_size
           : std::pow(volume * resolution.particles_per_cell / static_cast<double>(*resolution.particles), 1.0 / dim);
-  // With a given cell size the particles per cell are asked for, with a given number of particles that number is.
+  plan.cell_size = resolution.cell_size ? wanted_cell : fit_to_period(scene, wanted_cell);
+  // With a given cell size the particles per cell are asked for, with a given number of particles that number
+  // is.
   const double particles_per_volume = resolution.cell_size
                                           ? resolution.particles_per_cell / std::pow(plan.cell_size, dim)
                                           : static_cast<double>(*resolution.particles) / volume;

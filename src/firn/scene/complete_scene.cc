@@ -39,6 +39,12 @@ void complete_method(const SceneDraft& draft) {
                "kernel \"linear\" does not work with form \"mls\", whose matrix D vanishes at grid nodes; "
                "use form = \"gradient\" or kernel = \"quadratic\"");
   }
+  if (method.kernel == MethodSettings::Kernel::linear) {
+    log_warning(
+        fmt::format("{}: the linear kernel is for teaching: its gradient does not vanish where a node's mass does, so "
+                    "stressed particles at a free surface can turn inside out within a few steps",
+                    draft.document.name));
+  }
   const std::optional<double> cell = draft.scene.resolution.cell_size;
   if (!cell) return;
   const double block = kBlockNodes * *cell;

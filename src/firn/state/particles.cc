@@ -170,6 +170,7 @@ Vec<double, dim> Particles<Real, dim>::position(std::size_t p, double dx, Kernel
 
 template <class Real, int dim>
 void Particles<Real, dim>::sort_by_cell(std::span<const std::uint32_t> movers) {
+  if (size() == 0) blocks_.clear();  // all of them may have been removed
   if (movers.empty()) return;
   std::vector<Mover> sorted(movers.size());
   for (std::size_t m = 0; m < movers.size(); ++m) sorted[m] = {cell()[movers[m]], id()[movers[m]], movers[m]};
