@@ -101,6 +101,7 @@ void RunPlayback::reread_series() {
   if (files.empty()) {
     // A run that has just begun has no list yet.
     if (files_.empty()) status_.message = message.empty() ? "the run has no frames yet" : message;
+    changed_.notify_all();
     return;
   }
   if (files_.empty()) status_.message.clear();

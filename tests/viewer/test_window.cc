@@ -1,0 +1,415 @@
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <firn/apps/viewer/run_playback.h>
+#include <firn/apps/viewer/simulation_player.h>
+#include <firn/apps/viewer/window.h>
+#include <firn/scene/load_scene.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <thread>
+
+#include "support/record.h"
+#include "viewer/fake_simulation.h"
+#include "viewer/virtual_display.h"
+
+namespace firn {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kWidth = 640, kHeight = 480;
+
+const char* const kBall = R"(
+end_time = 0.2
+frame_rate = 20
+resolution.particles = 4000
+[material.jelly]
+preset = "jelly"
+[[body]]
+shape = "sphere"
+radius = 0.4
+position = [0, 1, 0]
+velocity = [0, -4, 0]
+material = "jelly"
+[[collider]]
+shape = "half_space"
+contact = "separate"
+[camera]
+position = [0, 1, 4]
+target = [0, 1, 0]
+field_of_view = 40
+)";
+
+/// Pixels at which a condition holds, of the part of the picture that the panel leaves free.
+struct Found {
+  int count = 0;
+  double x = 0, y = 0;  ///< their centre
+};
+Found find(const Image& image, const std::function<bool(const std::uint8_t*)>& condition) {
+  Found found;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width - 100; ++x) {
+      if ((x < 340 && y < 190) || !condition(image.pixel(x, y))) continue;
+      ++found.count;
+      found.x += x;
+      found.y += y;
+    }
+  }
+  if (found.count > 0) found.x /= found.count, found.y /= found.count;
+  return found;
+}
+
+/// Jelly is the only red thing.
+bool red(const std::uint8_t* rgb) { return rgb[0] > 1.6 * rgb[1] + 15 && rgb[0] > 1.6 * rgb[2] + 15; }
+
+/// Share of pixels that differ by more than a little, panel left out.
+double difference(const Image& a, const Image& b) {
+  int different = 0, all = 0;
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = 0; x < a.width; ++x) {
+      if (x < 340 && y < 190) continue;
+      ++all;
+      for (int c = 0; c < 3; ++c) {
+        if (std::abs(a.pixel(x, y)[c] - b.pixel(x, y)[c]) > 12) {
+          ++different;
+          break;
+        }
+      }
+    }
+  }
+  return static_cast<double>(different) / all;
+}
+
+class Window : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!display_.ready()) {
+      GTEST_SKIP()
+          << "NOTICE: Xvfb is not installed; the viewer's window is not tested (tools/install_dependencies.sh)";
+    }
+  }
+
+  /// Draws until the source has settled in a state; then once more, so that the picture shows it.
+  bool reaches(ViewerWindow& window, const std::function<bool(const SourceStatus&)>& condition) {
+    for (int i = 0; i < 2000; ++i) {
+      window.draw();
+      if (condition(window.controls().status())) {
+        window.draw();
+        return true;
+      }
+      std::this_thread::sleep_for(5ms);
+    }
+    return false;
+  }
+  bool paused_at(ViewerWindow& window, std::int64_t frame) {
+    return reaches(window, [&](const SourceStatus& s) {
+      return s.published > 0 && s.state == PlayState::paused && s.frame.frame == frame && !s.busy;
+    });
+  }
+  /// After this no picture is of a moving camera.
+  void rest(ViewerWindow& window) {
+    std::this_thread::sleep_for(300ms);
+    window.draw();
+  }
+  void press(ViewerWindow& window, int key) {
+    window.on_key(key, 0, GLFW_PRESS, 0);
+    window.draw();
+    window.on_key(key, 0, GLFW_RELEASE, 0);
+    window.draw();
+  }
+  void drag(ViewerWindow& window, int button, double dx, double dy) {
+    const double x = 400, y = 300;
+    window.on_cursor(x, y);
+    window.draw();
+    window.on_button(button, GLFW_PRESS, 0);
+    window.draw();
+    for (int i = 1; i <= 4; ++i) {
+      window.on_cursor(x + dx * i / 4, y + dy * i / 4);
+      window.draw();
+    }
+    window.on_button(button, GLFW_RELEASE, 0);
+    window.draw();
+  }
+  void click(ViewerWindow& window, double x, double y) {
+    window.on_cursor(x, y);
+    window.draw();
+    window.on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_PRESS, 0);
+    window.draw();
+    window.on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_RELEASE, 0);
+    window.draw();
+    window.draw();
+  }
+
+  test::VirtualDisplay display_;
+  const Scene scene_ = parse_scene(kBall, "ball.toml");
+  const ViewerWindow::Options options_ = {.width = kWidth, .height = kHeight, .title = "test"};
+};
+
+TEST_F(Window, ShowsTheBallWhereItIs) {
+  SimulationPlayer player([this] { return Simulation::create(scene_); });
+  ViewerWindow window(scene_, player, options_);
+  EXPECT_TRUE(window.software());
+  ASSERT_TRUE(paused_at(window, 1));
+  const Image picture = window.capture();
+  if (const char* folder = std::getenv("FIRN_TEST_PICTURES")) write_png(std::string(folder) + "/window.png", picture);
+  const Found ball = find(picture, red);
+  EXPECT_NEAR(ball.x, kWidth / 2.0, 4);
+  EXPECT_NEAR(ball.y, kHeight / 2.0, 6);
+  // r = 0.4 m at 4 m, field of view 40 degrees over 480 pixels.
+  const double radius = 0.4 / std::sqrt(16 - 0.16) / std::tan(20 * M_PI / 180) * kHeight / 2;
+  EXPECT_NEAR(std::sqrt(ball.count / M_PI), radius, 0.08 * radius);
+  const std::uint8_t* sky = picture.pixel(600, 30);
+  EXPECT_GT(sky[2], sky[0] + 20) << "blue above";
+  const std::uint8_t* ground = picture.pixel(600, kHeight - 10);
+  EXPECT_LT(std::abs(ground[2] - ground[0]), 40) << "grey below";
+  EXPECT_LT(ground[2] + 30, sky[2]);
+  EXPECT_EQ(window.error(), 0U);
+}
+
+TEST_F(Window, SpacePlaysAndPausesAndResetReturns) {
+  SimulationPlayer player([this] { return Simulation::create(scene_); });
+  ViewerWindow window(scene_, player, options_);
+  ASSERT_TRUE(paused_at(window, 1));
+  const Image first = window.capture();
+  press(window, GLFW_KEY_PERIOD);
+  ASSERT_TRUE(paused_at(window, 2));
+  const Image second = window.capture();
+  EXPECT_GT(find(second, red).y, find(first, red).y + 10) << "it falls";
+  window.draw();
+  EXPECT_EQ(difference(second, window.capture()), 0) << "paused means still";
+  press(window, GLFW_KEY_SPACE);
+  ASSERT_TRUE(reaches(window, [](const SourceStatus& s) { return s.state == PlayState::finished; }));
+  EXPECT_GT(difference(second, window.capture()), 0.02);
+  press(window, GLFW_KEY_R);
+  ASSERT_TRUE(paused_at(window, 1));
+  EXPECT_LT(difference(first, window.capture()), 1e-3);
+  press(window, GLFW_KEY_SPACE);
+  press(window, GLFW_KEY_SPACE);
+  EXPECT_TRUE(reaches(window, [](const SourceStatus& s) {
+    return (s.state == PlayState::paused || s.state == PlayState::finished) && !s.busy;
+  }));
+  EXPECT_EQ(window.error(), 0U);
+}
+
+TEST_F(Window, TheMouseMovesTheCameraAndFrameAllBringsItBack) {
+  SimulationPlayer player([this] { return Simulation::create(scene_); });
+  ViewerWindow window(scene_, player, options_);
+  ASSERT_TRUE(paused_at(window, 1));
+  const Found start = find(window.capture(), red);
+  drag(window, GLFW_MOUSE_BUTTON_RIGHT, 90, 40);
+  rest(window);
+  const Found panned = find(window.capture(), red);
+  EXPECT_NEAR(panned.x - start.x, 90, 8) << "the ball stays under the mouse";
+  EXPECT_NEAR(panned.y - start.y, 40, 8);
+  window.on_scroll(0, 4);
+  rest(window);
+  EXPECT_GT(find(window.capture(), red).count, 1.5 * panned.count);
+  press(window, GLFW_KEY_F);
+  EXPECT_GT(find(window.capture(), red).count, 1.5 * panned.count) << "it fills the picture";
+  window.on_scroll(0, -6);  // out from under the panel
+  rest(window);
+  const Found framed = find(window.capture(), red);
+  EXPECT_NEAR(framed.x, kWidth / 2.0, 10);
+  EXPECT_NEAR(framed.y, kHeight / 2.0, 10);
+  const Image level = window.capture();
+  drag(window, GLFW_MOUSE_BUTTON_LEFT, 0, 60);
+  rest(window);
+  const Found above = find(window.capture(), red);
+  EXPECT_NEAR(above.x, framed.x, 6) << "orbiting about the ball leaves it in the middle";
+  EXPECT_GT(difference(level, window.capture()), 0.1) << "but the horizon moves";
+  EXPECT_EQ(window.error(), 0U);
+}
+
+TEST_F(Window, AnOrbitMovesWhatIsBesideTheTarget) {
+  Scene scene = scene_;
+  scene.camera.target = Vec3d{{0, 1, -1}};
+  scene.camera.position = Vec3d{{0, 1, 3}};
+  SimulationPlayer player([&scene] { return Simulation::create(scene); });
+  ViewerWindow window(scene, player, options_);
+  ASSERT_TRUE(paused_at(window, 1));
+  const Found before = find(window.capture(), red);
+  drag(window, GLFW_MOUSE_BUTTON_LEFT, 60, 0);
+  rest(window);
+  EXPECT_GT(find(window.capture(), red).x, before.x + 15) << "what is in front follows the mouse";
+}
+
+TEST_F(Window, ColoursByAColumnWithABar) {
+  SimulationPlayer player([this] { return Simulation::create(scene_); });
+  ViewerWindow window(scene_, player, options_);
+  ASSERT_TRUE(paused_at(window, 1));
+  const Image by_material = window.capture();
+  // The choice is made with the mouse, in the panel: a click opens it, another one takes the first column.
+  click(window, 60, 122);
+  const Image open = window.capture();
+  click(window, 60, 165);
+  if (const char* folder = std::getenv("FIRN_TEST_PICTURES")) {
+    write_png(std::string(folder) + "/window_choices.png", open);
+    write_png(std::string(folder) + "/window_colors.png", window.capture());
+  }
+  ASSERT_NE(window.controls().color_by, "");
+  window.controls().color_by = "velocity";
+  window.controls().range = {0, 4};
+  window.controls().source().step();
+  ASSERT_TRUE(paused_at(window, 2));
+  const Image by_speed = window.capture();
+  EXPECT_GT(find(by_material, red).count, 1000);
+  EXPECT_EQ(find(by_speed, red).count, 0);
+  // All of it moves at 4 m/s and more: the top of the map is yellow.
+  const auto yellow = [](const std::uint8_t* rgb) { return rgb[0] > 90 && rgb[1] > 90 && rgb[2] < 0.6 * rgb[0]; };
+  EXPECT_GT(find(by_speed, yellow).count, 1000);
+  EXPECT_EQ(find(by_material, yellow).count, 0);
+  // The bar: dark blue at its foot, yellow at its head.
+  const std::uint8_t *foot = by_speed.pixel(kWidth - 82, 3 * kHeight / 4 - 3),
+                     *head = by_speed.pixel(kWidth - 82, kHeight / 4 + 3);
+  EXPECT_NEAR(foot[0], 68, 8);
+  EXPECT_NEAR(foot[2], 88, 8);
+  EXPECT_NEAR(head[0], 245, 12);
+  EXPECT_NEAR(head[1], 229, 12);
+  EXPECT_EQ(window.error(), 0U);
+}
+
+TEST_F(Window, ThinsWhileTheCameraMovesAndSaysSo) {
+  SimulationPlayer player([this] { return Simulation::create(scene_); });
+  ViewerWindow::Options options = options_;
+  options.moving_budget = 500;
+  ViewerWindow window(scene_, player, options);
+  ASSERT_TRUE(paused_at(window, 1));
+  rest(window);
+  const std::size_t all = window.notes().drawn;
+  EXPECT_FALSE(window.notes().thinned);
+  const Found still = find(window.capture(), red);
+  window.on_scroll(0, 1e-6);
+  window.draw();
+  EXPECT_TRUE(window.notes().thinned);
+  EXPECT_LE(window.notes().drawn, 500U);
+  const Found moving = find(window.capture(), red);
+  EXPECT_NEAR(moving.count, still.count, 0.25 * still.count) << "larger balls cover what all of them did";
+  EXPECT_NEAR(moving.x, still.x, 5);
+  rest(window);
+  EXPECT_FALSE(window.notes().thinned);
+  EXPECT_EQ(window.notes().drawn, all);
+  EXPECT_EQ(window.error(), 0U);
+}
+
+TEST_F(Window, AFailureShowsItsReportAndTheWindowLives) {
+  test::Gate open(true);
+  SimulationPlayer player([&] { return std::make_unique<test::FakeSimulation>(open, 3); });
+  ViewerWindow window(scene_, player, options_);
+  ASSERT_TRUE(paused_at(window, 1));
+  const Image before = window.capture();
+  press(window, GLFW_KEY_SPACE);
+  ASSERT_TRUE(reaches(window, [](const SourceStatus& s) { return s.state == PlayState::failed; }));
+  const Image report = window.capture();
+  // The report lies in the lower left corner, dark.
+  const auto corner = [](const Image& image) { return image.pixel(20, kHeight - 20); };
+  EXPECT_LT(corner(report)[0] + 30, corner(before)[0]);
+  press(window, GLFW_KEY_R);
+  ASSERT_TRUE(paused_at(window, 1));
+  EXPECT_LT(difference(before, window.capture()), 1e-3);
+}
+
+/// The shapes that are no particles, in 3D and 2D.
+TEST_F(Window, DrawsBoxesSpheresAndHalfSpaces) {
+  const std::string colliders =
+      "[[collider]]\nshape = \"box\"\nsize = [0.5, 0.5, 0.5]\nposition = [1, 0.5, 0]\ncolor = [0, 0.8, 0]\n"
+      "[[collider]]\nshape = \"sphere\"\nradius = 0.3\nposition = [0.4, 0.3, 1]\ncolor = [0, 0, 0.9]\n";
+  const Scene scene = parse_scene(kBall + colliders, "solids.toml");
+  SimulationPlayer player([&scene] { return Simulation::create(scene); });
+  ViewerWindow window(scene, player, options_);
+  ASSERT_TRUE(paused_at(window, 1));
+  const Image picture = window.capture();
+  if (const char* folder = std::getenv("FIRN_TEST_PICTURES"))
+    write_png(std::string(folder) + "/window_solids.png", picture);
+  const Found green = find(picture, [](const std::uint8_t* p) { return p[1] > 2 * p[0] + 20 && p[1] > 2 * p[2] + 20; });
+  const Found blue = find(picture, [](const std::uint8_t* p) { return p[2] > 3 * p[0] + 20 && p[2] > 3 * p[1] + 20; });
+  const double scale = kHeight / 2.0 / std::tan(20 * M_PI / 180);  // pixels per radian
+  EXPECT_NEAR(green.x, kWidth / 2.0 + scale * 1 / 4, 12);
+  EXPECT_NEAR(green.y, kHeight / 2.0 + scale * 0.5 / 4, 12);
+  EXPECT_GT(green.count, 2000);
+  EXPECT_NEAR(blue.x, kWidth / 2.0 + scale * 0.4 / 3, 8);
+  EXPECT_NEAR(blue.y, kHeight / 2.0 + scale * 0.7 / 3, 8);
+  EXPECT_NEAR(std::sqrt(blue.count / M_PI), scale * 0.3 / 3, 0.12 * scale * 0.3 / 3);
+}
+
+/// What a million particles cost the processor in one picture: the copy of a snapshot, and the calls. Software OpenGL
+/// draws on the processor inside some of these calls; so they are also counted with one particle in as many calls.
+TEST_F(Window, CpuSideOfAMillionParticles) {
+  constexpr std::size_t kParticles = 1000000;
+  class Source final : public FrameSource {
+   public:
+    Source(std::size_t count, bool doubles) : count_(count), doubles_(doubles) { next(); }
+    void play() override {}
+    void pause() override {}
+    void step() override {}
+    void reset() override {}
+    void next() {
+      auto snapshot = std::make_shared<Snapshot>();
+      snapshot->particle_spacing = 0.01;
+      snapshot->materials = {{"stuff", "snow", "snow", 0, count_}};
+      std::vector<float> x(3 * count_);
+      for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>((i * 7919) % 1009) * 1e-3F;
+      for (const auto& [name, unit] : {std::pair("position", "m"), {"velocity", "m/s"}}) {
+        snapshot->columns.push_back({name, unit, "", 3, x});
+        if (doubles_) snapshot->columns.back().values = std::vector<double>(x.begin(), x.end());
+      }
+      const std::lock_guard lock(mutex_);
+      snapshot_ = snapshot;
+      ++status_.published;
+      status_.state = PlayState::paused;
+    }
+
+   private:
+    std::size_t count_;
+    bool doubles_;
+  };
+  const auto measure = [&](std::size_t count, const char* column, bool doubles) {
+    Source source(count, doubles);
+    ViewerWindow::Options options = options_;
+    options.width = options.height = 64;
+    ViewerWindow window(scene_, source, options);
+    window.controls().color_by = column;
+    ViewerWindow::Times least = {1e9, 1e9};
+    for (int i = 0; i < 7; ++i) {
+      source.next();
+      window.draw();
+      window.capture();  // waits for the picture
+      least.upload = std::min(least.upload, window.times().upload);
+      least.draw = std::min(least.draw, window.times().draw);
+    }
+    EXPECT_EQ(window.notes().drawn, count);
+    EXPECT_EQ(window.error(), 0U);
+    return least;
+  };
+  const auto look = measure(kParticles, "", false), column = measure(kParticles, "velocity", false);
+  const auto doubles = measure(kParticles, "velocity", true), calls = measure(1, "velocity", false);
+  test::record("upload_ms_by_material", 1e3 * look.upload);
+  test::record("upload_ms_by_velocity", 1e3 * column.upload);
+  test::record("upload_ms_by_velocity_in_double_precision", 1e3 * doubles.upload);
+  test::record("calls_ms", 1e3 * calls.draw);
+  test::record("calls_ms_with_software_vertices", 1e3 * column.draw);
+  EXPECT_GT(column.upload, look.upload) << "the column is uploaded too";
+}
+
+/// Makes docs/images/viewer.png; FIRN_TEST_PICTURES names the folder to write it to.
+TEST_F(Window, DISABLED_PictureOfTheSnowScene) {
+  const Scene scene = load_scene(FIRN_SOURCE_DIR "/scenes/snow_cube.toml",
+                                 {"render.color_by=\"velocity\"", "resolution.particles=60000"});
+  SimulationPlayer player([&scene] { return Simulation::create(scene); });
+  ViewerWindow window(scene, player, {.width = 1120, .height = 700, .title = "Firn"});
+  player.play();
+  ASSERT_TRUE(player.wait([](const SourceStatus& s) { return s.frame.frame == 20; }, 600s));
+  player.pause();
+  ASSERT_TRUE(reaches(window, [](const SourceStatus& s) { return !s.busy && s.state == PlayState::paused; }));
+  drag(window, GLFW_MOUSE_BUTTON_LEFT, 60, 20);
+  rest(window);
+  rest(window);
+  write_png(std::string(std::getenv("FIRN_TEST_PICTURES")) + "/viewer.png", window.capture());
+}
+
+}  // namespace
+}  // namespace firn
