@@ -80,21 +80,38 @@ void fill(GLuint buffer, const void* data, std::size_t bytes) {
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_STREAM_DRAW);
 }
 
-/// As floats, from `origin`; where the stored numbers are floats and count from 0 they are copied as they are.
+/// Memory of the driver for the new contents of a buffer, written by `write(float*)`.
+template <class Write>
+void fill_mapped(GLuint buffer, std::size_t count, const Write& write) {
+  fill(buffer, nullptr, std::max<std::size_t>(count, 1) * sizeof(float));
+  void* to = glMapBuffer(GL_ARRAY_BUFFER, GL_WRITE_ONLY);
+  if (to == nullptr) throw Error(ErrorKind::resources, "out of graphics memory; use fewer particles");
+  write(static_cast<float*>(to));
+  glUnmapBuffer(GL_ARRAY_BUFFER);
+}
+
+/// As floats; where the stored numbers are floats they are copied as they are.
 template <class T>
-void fill_with_floats(GLuint buffer, const std::vector<T>& values, const Vec3d& origin = {}) {
+void fill_with_floats(GLuint buffer, const std::vector<T>& values) {
   if constexpr (std::is_same_v<T, float>) {
     fill(buffer, values.data(), values.size() * sizeof(float));
   } else {
-    fill(buffer, nullptr, std::max<std::size_t>(values.size(), 1) * sizeof(float));
-    auto* to = static_cast<float*>(glMapBuffer(GL_ARRAY_BUFFER, GL_WRITE_ONLY));
-    if (to == nullptr) throw Error(ErrorKind::resources, "out of graphics memory; use fewer particles");
-    const double shift[3] = {origin[0], origin[1], origin[2]};
-    for (std::size_t i = 0, axis = 0; i < values.size(); ++i, axis = axis == 2 ? 0 : axis + 1) {
-      to[i] = static_cast<float>(static_cast<double>(values[i]) - shift[axis]);
-    }
-    glUnmapBuffer(GL_ARRAY_BUFFER);
+    fill_mapped(buffer, values.size(), [&](float* to) {
+      std::transform(values.begin(), values.end(), to, [](T x) { return static_cast<float>(x); });
+    });
   }
+}
+
+/// Positions from `origin`, by threes.
+void fill_with_positions(GLuint buffer, const std::vector<double>& x, const Vec3d& origin) {
+  fill_mapped(buffer, x.size(), [&](float* to) {
+    const double x0 = origin[0], x1 = origin[1], x2 = origin[2];
+    for (std::size_t i = 0; i + 2 < x.size(); i += 3) {
+      to[i] = static_cast<float>(x[i] - x0);
+      to[i + 1] = static_cast<float>(x[i + 1] - x1);
+      to[i + 2] = static_cast<float>(x[i + 2] - x2);
+    }
+  });
 }
 
 const SnapshotColumn& find_column(const Snapshot& snapshot, const std::string& name) {
@@ -131,10 +148,14 @@ void ParticleCloud::upload(const Snapshot& snapshot) {
   size_ = snapshot.size();
   spacing_ = static_cast<float>(snapshot.particle_spacing);
   dimension_ = snapshot.dimension;
-  const bool doubles = std::holds_alternative<std::vector<double>>(snapshot.columns.front().values);
-  origin_ = doubles && size_ > 0 ? snapshot.position(0) : Vec3d{};
-  std::visit([&](const auto& values) { fill_with_floats(positions_.id(), values, origin_); },
-             snapshot.columns.front().values);
+  origin_ = {};
+  const auto& positions = snapshot.columns.front().values;
+  if (const auto* doubles = std::get_if<std::vector<double>>(&positions)) {
+    if (size_ > 0) origin_ = snapshot.position(0);
+    fill_with_positions(positions_.id(), *doubles, origin_);
+  } else {
+    std::visit([&](const auto& values) { fill_with_floats(positions_.id(), values); }, positions);
+  }
 }
 
 void ParticleCloud::color(const Snapshot& snapshot, const View& view) {

@@ -16,6 +16,7 @@
 #include <array>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 namespace firn {
 namespace {
@@ -23,6 +24,8 @@ namespace {
 /// How long the window sleeps if nothing happens, s.
 constexpr double kSleep = 0.05;
 constexpr int kButtons = 3;
+/// Dear ImGui takes a picture or two to lay out what an event has opened.
+constexpr int kDrawsPerEvent = 3;
 
 std::string last_glfw_error() {
   const char* text = nullptr;
@@ -137,10 +140,11 @@ struct ViewerWindow::State {
   Image picture;
   std::optional<double> last_draw;  // s of GLFW's clock
   double cursor[2] = {-1, -1};
-  std::array<bool, kButtons> down = {};
+  std::array<bool, kButtons> down = {}, clicked = {};  // clicked: pressed since the last picture, perhaps released
+  bool shift = false;
   bool dragging = false;
   bool recolor = false;
-  bool touched = true;  // something happened that asks for a new picture
+  int wanted_draws = kDrawsPerEvent;  // pictures that what happened asks for
 };
 
 ViewerWindow::ViewerWindow(const Scene& scene, FrameSource& source, const Options& options)
@@ -189,7 +193,7 @@ void ViewerWindow::State::draw_interface() {
   // The backend asks the system where the mouse is; here the events tell, also those of tests.
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = {static_cast<float>(cursor[0]), static_cast<float>(cursor[1])};
-  for (std::size_t b = 0; b < kButtons; ++b) io.MouseDown[b] = down[b];
+  for (std::size_t b = 0; b < kButtons; ++b) io.MouseDown[b] = down[b] || std::exchange(clicked[b], false);
   ImGui::NewFrame();
   if (draw_panel(controls, notes)) recolor = true;
   ImGui::Render();
@@ -212,7 +216,7 @@ void ViewerWindow::draw() {
   s.draw_interface();
   s.times.draw = glfwGetTime() - uploaded;
   s.notes.frame_milliseconds = 1e3 * (s.times.draw + (fresh ? s.times.upload : 0));
-  s.touched = false;
+  s.wanted_draws = std::max(s.wanted_draws - 1, 0);
   glfwSwapBuffers(s.display.window());
 }
 
@@ -228,7 +232,7 @@ void ViewerWindow::run() {
     const bool moving = s.controls.moving(glfwGetTime());
     // Software OpenGL would take the simulation's processors for pictures that do not differ.
     const bool playback = s.controls.source().seekable() && now.state == PlayState::playing;
-    if (changed || s.touched || moving || was_moving || playback || s.recolor || s.dragging) {
+    if (changed || s.wanted_draws > 0 || moving || was_moving || playback || s.recolor || s.dragging) {
       shown = now;
       was_moving = moving;
       draw();
@@ -260,7 +264,7 @@ const Image& ViewerWindow::capture() {
 }
 
 void ViewerWindow::on_key(int key, int scancode, int action, int mods) {
-  state_->touched = true;
+  state_->wanted_draws = kDrawsPerEvent;
   ImGui_ImplGlfw_KeyCallback(state_->display.window(), key, scancode, action, mods);
   if (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput) return;
   // Stepping may repeat while the key is held; anything else toggles or begins anew.
@@ -284,15 +288,18 @@ void ViewerWindow::on_key(int key, int scancode, int action, int mods) {
 }
 
 void ViewerWindow::on_character(unsigned code) {
-  state_->touched = true;
+  state_->wanted_draws = kDrawsPerEvent;
   ImGui_ImplGlfw_CharCallback(state_->display.window(), code);
 }
 
-void ViewerWindow::on_button(int button, int action, int) {
+void ViewerWindow::on_button(int button, int action, int mods) {
   State& s = *state_;
-  s.touched = true;
+  s.wanted_draws = kDrawsPerEvent;
   if (button < 0 || button >= kButtons) return;
-  s.down[static_cast<std::size_t>(button)] = action == GLFW_PRESS;
+  const bool pressed = action == GLFW_PRESS;
+  s.down[static_cast<std::size_t>(button)] = pressed;
+  if (pressed) s.clicked[static_cast<std::size_t>(button)] = true;
+  s.shift = (mods & GLFW_MOD_SHIFT) != 0;
   const bool any = std::find(s.down.begin(), s.down.end(), true) != s.down.end();
   s.dragging = any && (s.dragging || !ImGui::GetIO().WantCaptureMouse);
 }
@@ -302,17 +309,16 @@ void ViewerWindow::on_cursor(double x, double y) {
   const double dx = x - s.cursor[0], dy = y - s.cursor[1];
   s.cursor[0] = x;
   s.cursor[1] = y;
-  s.touched = true;
+  s.wanted_draws = kDrawsPerEvent;
   if (!s.dragging) return;
   int width = 0, height = 0;
   glfwGetWindowSize(s.display.window(), &width, &height);
-  const bool shift = glfwGetKey(s.display.window(), GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS;
-  const auto kind = s.down[GLFW_MOUSE_BUTTON_LEFT] && !shift ? ViewControls::Drag::orbit : ViewControls::Drag::pan;
+  const auto kind = s.down[GLFW_MOUSE_BUTTON_LEFT] && !s.shift ? ViewControls::Drag::orbit : ViewControls::Drag::pan;
   s.controls.drag(kind, dx / std::max(height, 1), -dy / std::max(height, 1));
 }
 
 void ViewerWindow::on_scroll(double dx, double dy) {
-  state_->touched = true;
+  state_->wanted_draws = kDrawsPerEvent;
   ImGui_ImplGlfw_ScrollCallback(state_->display.window(), dx, dy);
   if (!ImGui::GetIO().WantCaptureMouse) state_->controls.scroll(dy);
 }
