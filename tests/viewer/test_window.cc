@@ -3,19 +3,24 @@
 #include <firn/apps/viewer/run_playback.h>
 #include <firn/apps/viewer/simulation_player.h>
 #include <firn/apps/viewer/window.h>
+#include <firn/io/frame_series.h>
+#include <firn/io/frame_writer.h>
 #include <firn/scene/load_scene.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <thread>
 
 #include "support/record.h"
 #include "viewer/fake_simulation.h"
 #include "viewer/virtual_display.h"
+#include "viewer/window_events.h"
 
 namespace firn {
 namespace {
@@ -311,6 +316,66 @@ TEST_F(Window, AFailureShowsItsReportAndTheWindowLives) {
   press(window, GLFW_KEY_R);
   ASSERT_TRUE(paused_at(window, 1));
   EXPECT_LT(difference(before, window.capture()), 1e-3);
+}
+
+TEST_F(Window, ListensToTheDisplaysKeysAndMouse) {
+  SimulationPlayer player([this] { return Simulation::create(scene_); });
+  ViewerWindow window(scene_, player, options_);
+  ASSERT_TRUE(paused_at(window, 1));
+  const Found start = find(window.capture(), red);
+  const test::WindowEvents events("test");
+  events.key('.');
+  ASSERT_TRUE(paused_at(window, 2)) << "the step";
+  events.key('r');
+  ASSERT_TRUE(paused_at(window, 1)) << "the reset";
+  const auto settle = [&] {
+    for (int i = 0; i < 3; ++i) {
+      std::this_thread::sleep_for(20ms);
+      window.draw();
+    }
+  };
+  events.move(400, 300);
+  settle();
+  events.button(3, true, 400, 300);
+  settle();
+  events.move(460, 330);
+  settle();
+  events.button(3, false, 460, 330);
+  rest(window);
+  const Found panned = find(window.capture(), red);
+  EXPECT_NEAR(panned.x - start.x, 60, 6);
+  EXPECT_NEAR(panned.y - start.y, 30, 6);
+  events.button(4, true, 460, 330);  // a notch of the wheel
+  settle();
+  rest(window);
+  EXPECT_GT(find(window.capture(), red).count, 1.1 * panned.count);
+  events.key(' ');
+  EXPECT_TRUE(reaches(window, [](const SourceStatus& s) { return s.state == PlayState::finished; }));
+}
+
+TEST_F(Window, TheTimeLineGoesToAFrame) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / ("firn_window_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  std::vector<SeriesFrame> series;
+  const auto simulation = Simulation::create(scene_);
+  for (std::int64_t frame = 1; frame <= 4; ++frame) {
+    if (frame > 1) simulation->advance_frame();
+    series.push_back({frame_file_name(frame), simulation->time()});
+    write_frame(folder / series.back().name, simulation->snapshot(), {frame, "single", "", ""});
+  }
+  write_frame_series(folder / kFrameSeriesName, series);
+  RunPlayback playback(folder, scene_.frame_rate);
+  ViewerWindow window(scene_, playback, options_);
+  ASSERT_TRUE(paused_at(window, 1));
+  const Found first = find(window.capture(), red);
+  click(window, 350, 70);  // the right end of the line
+  ASSERT_TRUE(paused_at(window, 4));
+  EXPECT_GT(find(window.capture(), red).y, first.y + 30) << "it has fallen";
+  press(window, GLFW_KEY_R);
+  ASSERT_TRUE(paused_at(window, 1));
+  press(window, GLFW_KEY_SPACE);
+  EXPECT_TRUE(reaches(window, [](const SourceStatus& s) { return s.frame.frame == 4; })) << "plays by the clock";
+  std::filesystem::remove_all(folder);
 }
 
 /// The shapes that are no particles, in 3D and 2D.
