@@ -19,6 +19,7 @@
 
 #include "support/record.h"
 #include "viewer/fake_simulation.h"
+#include "viewer/reference_picture.h"
 #include "viewer/virtual_display.h"
 #include "viewer/window_events.h"
 
@@ -431,6 +432,42 @@ TEST_F(Window, DrawsTheFlatWorldOf2D) {
   EXPECT_FALSE(is_ground(surface - 8));
   EXPECT_TRUE(is_ground(surface + 8));
   EXPECT_EQ(window.error(), 0U);
+}
+
+/// The look as a whole, against pictures that were looked at. The panel, which tells times, is left out. To renew them:
+/// FIRN_TEST_PICTURES=tests/viewer/pictures, and look.
+TEST_F(Window, LooksAsItDid) {
+  const std::string colliders =
+      "[[collider]]\nshape = \"box\"\nsize = [0.5, 0.5, 0.5]\nrotation = [0, 30, 0]\nposition = [1, 0.5, 0]\n"
+      "[[collider]]\nshape = \"sphere\"\nradius = 0.3\nposition = [0.4, 0.3, 1]\n";
+  const Scene scene = parse_scene(kBall + colliders, "look.toml");
+  SimulationPlayer player([&scene] { return Simulation::create(scene); });
+  ViewerWindow window(scene, player, options_);
+  ASSERT_TRUE(paused_at(window, 1));
+  Image previous;
+  for (const std::string name : {"material", "von_mises_stress"}) {
+    if (name != "material") {
+      press(window, GLFW_KEY_PERIOD);
+      press(window, GLFW_KEY_PERIOD);
+      ASSERT_TRUE(paused_at(window, 3));
+      const auto choices = window.controls().choices();
+      ASSERT_NE(std::find(choices.begin(), choices.end(), name), choices.end());
+      window.controls().color_by = name;
+      player.step();
+      ASSERT_TRUE(paused_at(window, 4));
+    }
+    Image picture = window.capture();
+    for (int y = 0; y < 200; ++y) std::fill(picture.pixel(0, y), picture.pixel(380, y), std::uint8_t(0));
+    const Image small = test::reduced(picture);
+    if (const char* folder = std::getenv("FIRN_TEST_PICTURES"))
+      write_png(std::string(folder) + "/" + name + ".png", small);
+    const Image reference = test::reference_picture(name);
+    EXPECT_LT(test::share_of_different(small, reference, 24), 0.02) << name;
+    if (!previous.rgb.empty()) {
+      EXPECT_GT(test::share_of_different(previous, reference, 24), 0.02) << "negative control";
+    }
+    previous = small;
+  }
 }
 
 /// What a million particles cost the processor in one picture: the copy of a snapshot, and the calls. Software OpenGL
