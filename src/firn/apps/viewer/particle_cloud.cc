@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
+#include <cstring>
 #include <type_traits>
 
 namespace firn {
 namespace {
 
-constexpr std::size_t kRangeSamples = 16384;
+constexpr std::size_t kRangeSamples = 4096;
 constexpr GLuint kPosition = 0, kValue = 1;  // a column of up to 9 components takes the attributes 1 to 3
 constexpr int kMapUnit = 0, kPaletteUnit = 1;
 
@@ -73,38 +73,47 @@ void main() {
 }
 )";
 
-/// New contents for a buffer. Throwing the old contents away first lets the driver take the new ones without waiting
-/// for pictures that still use the old.
-void fill(GLuint buffer, const void* data, std::size_t bytes) {
+/// New contents for a buffer, written by `write(void*)` into memory of the driver. A buffer of the right size is kept
+/// and only declared void: the driver need neither wait for pictures that still use the old contents nor clear fresh
+/// memory, which takes longer than the copy.
+template <class Write>
+void fill(GLuint buffer, std::size_t bytes, const Write& write) {
   glBindBuffer(GL_ARRAY_BUFFER, buffer);
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_STREAM_DRAW);
+  GLint present = 0;
+  glGetBufferParameteriv(GL_ARRAY_BUFFER, GL_BUFFER_SIZE, &present);
+  const auto size = static_cast<GLsizeiptr>(std::max<std::size_t>(bytes, 4));
+  if (present != size) glBufferData(GL_ARRAY_BUFFER, size, nullptr, GL_STREAM_DRAW);
+  void* to = glMapBufferRange(GL_ARRAY_BUFFER, 0, size, GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
+  if (to == nullptr) throw Error(ErrorKind::resources, "out of graphics memory; use fewer particles");
+  write(to);
+  glUnmapBuffer(GL_ARRAY_BUFFER);
 }
 
-/// Memory of the driver for the new contents of a buffer, written by `write(float*)`.
-template <class Write>
-void fill_mapped(GLuint buffer, std::size_t count, const Write& write) {
-  fill(buffer, nullptr, std::max<std::size_t>(count, 1) * sizeof(float));
-  void* to = glMapBuffer(GL_ARRAY_BUFFER, GL_WRITE_ONLY);
-  if (to == nullptr) throw Error(ErrorKind::resources, "out of graphics memory; use fewer particles");
-  write(static_cast<float*>(to));
-  glUnmapBuffer(GL_ARRAY_BUFFER);
+/// The numbers as they are stored.
+template <class T>
+void fill_with_copy(GLuint buffer, const std::vector<T>& values) {
+  const std::size_t bytes = values.size() * sizeof(T);
+  fill(buffer, bytes, [&](void* to) {
+    if (bytes > 0) std::memcpy(to, values.data(), bytes);
+  });
 }
 
 /// As floats; where the stored numbers are floats they are copied as they are.
 template <class T>
 void fill_with_floats(GLuint buffer, const std::vector<T>& values) {
   if constexpr (std::is_same_v<T, float>) {
-    fill(buffer, values.data(), values.size() * sizeof(float));
+    fill_with_copy(buffer, values);
   } else {
-    fill_mapped(buffer, values.size(), [&](float* to) {
-      std::transform(values.begin(), values.end(), to, [](T x) { return static_cast<float>(x); });
+    fill(buffer, values.size() * sizeof(float), [&](void* to) {
+      std::transform(values.begin(), values.end(), static_cast<float*>(to), [](T x) { return static_cast<float>(x); });
     });
   }
 }
 
 /// Positions from `origin`, by threes.
 void fill_with_positions(GLuint buffer, const std::vector<double>& x, const Vec3d& origin) {
-  fill_mapped(buffer, x.size(), [&](float* to) {
+  fill(buffer, x.size() * sizeof(float), [&](void* memory) {
+    auto* to = static_cast<float*>(memory);
     const double x0 = origin[0], x1 = origin[1], x2 = origin[2];
     for (std::size_t i = 0; i + 2 < x.size(); i += 3) {
       to[i] = static_cast<float>(x[i] - x0);
@@ -168,7 +177,7 @@ void ParticleCloud::color(const Snapshot& snapshot, const View& view) {
         [&](const auto& values) {
           if constexpr (std::is_same_v<std::decay_t<decltype(values)>, std::vector<std::int32_t>>) {
             value_type_ = GL_INT;
-            fill(values_.id(), values.data(), values.size() * sizeof(std::int32_t));
+            fill_with_copy(values_.id(), values);
           } else {
             fill_with_floats(values_.id(), values);
           }

@@ -62,7 +62,7 @@ class ParticleCloud {
   std::array<double, 2> range_ = {0, 1};
 };
 
-/// The automatic range of a column from at most some ten thousand particles evenly spread over the ids.
+/// The automatic range of a column from at most some four thousand particles evenly spread over the ids.
 std::array<double, 2> sampled_color_range(const SnapshotColumn& column, std::size_t particles);
 
 }  // namespace firn
