@@ -1,160 +1,27 @@
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
 #include <firn/apps/viewer/run_playback.h>
-#include <firn/apps/viewer/simulation_player.h>
-#include <firn/apps/viewer/window.h>
 #include <firn/io/frame_series.h>
 #include <firn/io/frame_writer.h>
-#include <firn/scene/load_scene.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <functional>
-#include <thread>
 
-#include "support/record.h"
 #include "viewer/fake_simulation.h"
-#include "viewer/reference_picture.h"
-#include "viewer/virtual_display.h"
 #include "viewer/window_events.h"
+#include "viewer/window_fixture.h"
 
 namespace firn {
 namespace {
 
 using namespace std::chrono_literals;
-
-constexpr int kWidth = 640, kHeight = 480;
-
-const char* const kBall = R"(
-end_time = 0.2
-frame_rate = 20
-resolution.particles = 4000
-[material.jelly]
-preset = "jelly"
-[[body]]
-shape = "sphere"
-radius = 0.4
-position = [0, 1, 0]
-velocity = [0, -4, 0]
-material = "jelly"
-[[collider]]
-shape = "half_space"
-contact = "separate"
-[camera]
-position = [0, 1, 4]
-target = [0, 1, 0]
-field_of_view = 40
-)";
-
-/// Pixels at which a condition holds, of the part of the picture that the panel leaves free.
-struct Found {
-  int count = 0;
-  double x = 0, y = 0;  ///< their centre
-};
-Found find(const Image& image, const std::function<bool(const std::uint8_t*)>& condition) {
-  Found found;
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width - 100; ++x) {
-      if ((x < 340 && y < 190) || !condition(image.pixel(x, y))) continue;
-      ++found.count;
-      found.x += x;
-      found.y += y;
-    }
-  }
-  if (found.count > 0) found.x /= found.count, found.y /= found.count;
-  return found;
-}
-
-/// Jelly is the only red thing.
-bool red(const std::uint8_t* rgb) { return rgb[0] > 1.6 * rgb[1] + 15 && rgb[0] > 1.6 * rgb[2] + 15; }
-
-/// Share of pixels that differ by more than a little, panel left out.
-double difference(const Image& a, const Image& b) {
-  int different = 0, all = 0;
-  for (int y = 0; y < a.height; ++y) {
-    for (int x = 0; x < a.width; ++x) {
-      if (x < 340 && y < 190) continue;
-      ++all;
-      for (int c = 0; c < 3; ++c) {
-        if (std::abs(a.pixel(x, y)[c] - b.pixel(x, y)[c]) > 12) {
-          ++different;
-          break;
-        }
-      }
-    }
-  }
-  return static_cast<double>(different) / all;
-}
-
-class Window : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!display_.ready()) {
-      GTEST_SKIP()
-          << "NOTICE: Xvfb is not installed; the viewer's window is not tested (tools/install_dependencies.sh)";
-    }
-  }
-
-  /// Draws until the source has settled in a state; then once more, so that the picture shows it.
-  bool reaches(ViewerWindow& window, const std::function<bool(const SourceStatus&)>& condition) {
-    for (int i = 0; i < 2000; ++i) {
-      window.draw();
-      if (condition(window.controls().status())) {
-        window.draw();
-        return true;
-      }
-      std::this_thread::sleep_for(5ms);
-    }
-    return false;
-  }
-  bool paused_at(ViewerWindow& window, std::int64_t frame) {
-    return reaches(window, [&](const SourceStatus& s) {
-      return s.published > 0 && s.state == PlayState::paused && s.frame.frame == frame && !s.busy;
-    });
-  }
-  /// After this no picture is of a moving camera.
-  void rest(ViewerWindow& window) {
-    std::this_thread::sleep_for(300ms);
-    window.draw();
-  }
-  void press(ViewerWindow& window, int key) {
-    window.on_key(key, 0, GLFW_PRESS, 0);
-    window.draw();
-    window.on_key(key, 0, GLFW_RELEASE, 0);
-    window.draw();
-  }
-  void drag(ViewerWindow& window, int button, double dx, double dy) {
-    const double x = 400, y = 300;
-    window.on_cursor(x, y);
-    window.draw();
-    window.on_button(button, GLFW_PRESS, 0);
-    window.draw();
-    for (int i = 1; i <= 4; ++i) {
-      window.on_cursor(x + dx * i / 4, y + dy * i / 4);
-      window.draw();
-    }
-    window.on_button(button, GLFW_RELEASE, 0);
-    window.draw();
-  }
-  void click(ViewerWindow& window, double x, double y) {
-    window.on_cursor(x, y);
-    window.draw();
-    window.on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_PRESS, 0);
-    window.draw();
-    window.on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_RELEASE, 0);
-    window.draw();
-    window.draw();
-  }
-
-  test::VirtualDisplay display_;
-  const Scene scene_ = parse_scene(kBall, "ball.toml");
-  const ViewerWindow::Options options_ = {.width = kWidth, .height = kHeight, .title = "test"};
-};
+using test::difference;
+using test::find;
+using test::Found;
+using test::kBall;
+using test::kHeight;
+using test::kWidth;
+using test::red;
+using test::Window;
 
 TEST_F(Window, ShowsTheBallWhereItIs) {
   SimulationPlayer player([this] { return Simulation::create(scene_); });
@@ -432,116 +299,6 @@ TEST_F(Window, DrawsTheFlatWorldOf2D) {
   EXPECT_FALSE(is_ground(surface - 8));
   EXPECT_TRUE(is_ground(surface + 8));
   EXPECT_EQ(window.error(), 0U);
-}
-
-/// The look as a whole, against pictures that were looked at. The panel, which tells times, is left out. To renew them:
-/// FIRN_TEST_PICTURES=tests/viewer/pictures, and look.
-TEST_F(Window, LooksAsItDid) {
-  const std::string colliders =
-      "[[collider]]\nshape = \"box\"\nsize = [0.5, 0.5, 0.5]\nrotation = [0, 30, 0]\nposition = [1, 0.5, 0]\n"
-      "[[collider]]\nshape = \"sphere\"\nradius = 0.3\nposition = [0.4, 0.3, 1]\n";
-  const Scene scene = parse_scene(kBall + colliders, "look.toml");
-  SimulationPlayer player([&scene] { return Simulation::create(scene); });
-  ViewerWindow window(scene, player, options_);
-  ASSERT_TRUE(paused_at(window, 1));
-  Image previous;
-  for (const std::string name : {"material", "von_mises_stress"}) {
-    if (name != "material") {
-      press(window, GLFW_KEY_PERIOD);
-      press(window, GLFW_KEY_PERIOD);
-      ASSERT_TRUE(paused_at(window, 3));
-      const auto choices = window.controls().choices();
-      ASSERT_NE(std::find(choices.begin(), choices.end(), name), choices.end());
-      window.controls().color_by = name;
-      player.step();
-      ASSERT_TRUE(paused_at(window, 4));
-    }
-    Image picture = window.capture();
-    for (int y = 0; y < 200; ++y) std::fill(picture.pixel(0, y), picture.pixel(380, y), std::uint8_t(0));
-    const Image small = test::reduced(picture);
-    if (const char* folder = std::getenv("FIRN_TEST_PICTURES"))
-      write_png(std::string(folder) + "/" + name + ".png", small);
-    const Image reference = test::reference_picture(name);
-    EXPECT_LT(test::share_of_different(small, reference, 24), 0.02) << name;
-    if (!previous.rgb.empty()) {
-      EXPECT_GT(test::share_of_different(previous, reference, 24), 0.02) << "negative control";
-    }
-    previous = small;
-  }
-}
-
-/// What a million particles cost the processor in one picture: the copy of a snapshot, and the calls. Software OpenGL
-/// draws on the processor inside some of these calls; so they are also counted with one particle in as many calls.
-TEST_F(Window, CpuSideOfAMillionParticles) {
-  constexpr std::size_t kParticles = 1000000;
-  class Source final : public FrameSource {
-   public:
-    Source(std::size_t count, bool doubles) : count_(count), doubles_(doubles) { next(); }
-    void play() override {}
-    void pause() override {}
-    void step() override {}
-    void reset() override {}
-    void next() {
-      auto snapshot = std::make_shared<Snapshot>();
-      snapshot->particle_spacing = 0.01;
-      snapshot->materials = {{"stuff", "snow", "snow", 0, count_}};
-      std::vector<float> x(3 * count_);
-      for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>((i * 7919) % 1009) * 1e-3F;
-      for (const auto& [name, unit] : {std::pair("position", "m"), {"velocity", "m/s"}}) {
-        snapshot->columns.push_back({name, unit, "", 3, x});
-        if (doubles_) snapshot->columns.back().values = std::vector<double>(x.begin(), x.end());
-      }
-      const std::lock_guard lock(mutex_);
-      snapshot_ = snapshot;
-      ++status_.published;
-      status_.state = PlayState::paused;
-    }
-
-   private:
-    std::size_t count_;
-    bool doubles_;
-  };
-  const auto measure = [&](std::size_t count, const char* column, bool doubles) {
-    Source source(count, doubles);
-    ViewerWindow::Options options = options_;
-    options.width = options.height = 64;
-    ViewerWindow window(scene_, source, options);
-    window.controls().color_by = column;
-    ViewerWindow::Times least = {1e9, 1e9};
-    for (int i = 0; i < 4; ++i) {
-      source.next();
-      window.draw();
-      least.upload = std::min(least.upload, window.times().upload);
-      least.draw = std::min(least.draw, window.times().draw);
-    }
-    EXPECT_EQ(window.notes().drawn, count);
-    EXPECT_EQ(window.error(), 0U);
-    return least;
-  };
-  const auto look = measure(kParticles, "", false), column = measure(kParticles, "velocity", false);
-  const auto doubles = measure(kParticles, "velocity", true), calls = measure(1, "velocity", false);
-  test::record("upload_ms_by_material", 1e3 * look.upload);
-  test::record("upload_ms_by_velocity", 1e3 * column.upload);
-  test::record("upload_ms_by_velocity_in_double_precision", 1e3 * doubles.upload);
-  test::record("calls_ms", 1e3 * calls.draw);
-  test::record("calls_ms_with_software_vertices", 1e3 * column.draw);
-  EXPECT_GT(column.upload, look.upload) << "the column is uploaded too";
-}
-
-/// Makes docs/images/viewer.png; FIRN_TEST_PICTURES names the folder to write it to.
-TEST_F(Window, DISABLED_PictureOfTheSnowScene) {
-  const Scene scene = load_scene(FIRN_SOURCE_DIR "/scenes/snow_cube.toml",
-                                 {"render.color_by=\"velocity\"", "resolution.particles=60000"});
-  SimulationPlayer player([&scene] { return Simulation::create(scene); });
-  ViewerWindow window(scene, player, {.width = 1120, .height = 700, .title = "Firn"});
-  player.play();
-  ASSERT_TRUE(player.wait([](const SourceStatus& s) { return s.frame.frame == 20; }, 600s));
-  player.pause();
-  ASSERT_TRUE(reaches(window, [](const SourceStatus& s) { return !s.busy && s.state == PlayState::paused; }));
-  drag(window, GLFW_MOUSE_BUTTON_LEFT, 60, 20);
-  rest(window);
-  rest(window);
-  write_png(std::string(std::getenv("FIRN_TEST_PICTURES")) + "/viewer.png", window.capture());
 }
 
 }  // namespace
