@@ -13,3 +13,6 @@ pkg_check_modules(cli11 REQUIRED IMPORTED_TARGET CLI11)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 # `hdf5` alone silently becomes the MPI build where both are installed.
 pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial)
+pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
+pkg_check_modules(glfw REQUIRED IMPORTED_TARGET glfw3)
+pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)

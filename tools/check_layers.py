@@ -41,6 +41,9 @@ LIBRARY_OWNERS = {
     "png.h": ["render"],
     "stb/": ["render"],
     "CLI/": [],
+    "epoxy/": [],
+    "GLFW/": [],
+    "imgui": [],
 }
 
 INTRINSICS_ALLOWED = ["core", "transfer"]

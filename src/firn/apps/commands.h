@@ -16,6 +16,7 @@ struct Interrupted : std::runtime_error {
 
 void add_run(CLI::App& program);
 void add_check(CLI::App& program);
+void add_view(CLI::App& program);
 void add_render(CLI::App& program);
 void add_explain(CLI::App& program);
 void add_sample(CLI::App& program);

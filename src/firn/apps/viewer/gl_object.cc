@@ -1,0 +1,79 @@
+#include <firn/apps/viewer/gl_object.h>
+#include <firn/core/error.h>
+#include <firn/render/daylight.h>
+#include <fmt/format.h>
+
+#include <vector>
+
+namespace firn {
+namespace {
+
+GLuint compile(const char* name, GLenum kind, const std::string& text) {
+  const std::string full = "#version 330 core\n" + text;
+  const char* source = full.c_str();
+  const GLuint shader = glCreateShader(kind);
+  glShaderSource(shader, 1, &source, nullptr);
+  glCompileShader(shader);
+  GLint good = 0;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
+  if (good != 0) return shader;
+  std::vector<char> log(2000);
+  glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
+  glDeleteShader(shader);
+  std::string line(log.data());
+  for (char& c : line) c = c == '\n' ? ' ' : c;
+  throw Error(ErrorKind::resources, fmt::format("the OpenGL driver does not compile the {} shader: {}", name, line));
+}
+
+Vec3f direction_in_view(const Vec3d& world, const Matrix4& view) {
+  const Vec3d d = normalized(world);
+  Vec3f r;
+  for (int i = 0; i < 3; ++i) {
+    r[i] = 0;
+    for (int j = 0; j < 3; ++j) r[i] += view[static_cast<std::size_t>(4 * j + i)] * static_cast<float>(d[j]);
+  }
+  return r;
+}
+
+}  // namespace
+
+GlProgram::GlProgram(const char* name, const std::string& vertex, const std::string& fragment)
+    : id_(glCreateProgram()) {
+  const GLuint vertex_shader = compile(name, GL_VERTEX_SHADER, vertex);
+  const GLuint fragment_shader = compile(name, GL_FRAGMENT_SHADER, fragment);
+  glAttachShader(id_, vertex_shader);
+  glAttachShader(id_, fragment_shader);
+  glLinkProgram(id_);
+  glDeleteShader(vertex_shader);
+  glDeleteShader(fragment_shader);
+  GLint good = 0;
+  glGetProgramiv(id_, GL_LINK_STATUS, &good);
+  if (good == 0) {
+    throw Error(ErrorKind::resources, fmt::format("the OpenGL driver does not link the {} shaders", name));
+  }
+}
+
+GlProgram::~GlProgram() { glDeleteProgram(id_); }
+
+const char* const kDaylightGlsl = R"(
+uniform vec3 sun_direction, up, sun_light, sky_light, ground_light;
+vec3 lit(vec3 color, vec3 normal, float wrap) {
+  float direct = max((dot(normal, sun_direction) + wrap) / (1.0 + wrap), 0.0);
+  return color * (direct * sun_light + mix(ground_light, sky_light, 0.5 + 0.5 * dot(normal, up)));
+}
+vec3 displayed(vec3 light) {
+  vec3 y = mix(light, 0.6 + 0.4 * (1.0 - exp(-(light - 0.6) / 0.4)), greaterThan(light, vec3(0.6)));
+  return mix(12.92 * y, 1.055 * pow(max(y, 0.0), vec3(1.0 / 2.4)) - 0.055, greaterThan(y, vec3(0.0031308)));
+}
+)";
+
+void set_daylight(const GlProgram& program, const View& scene, const Matrix4& view) {
+  const Daylight day{.sun_direction = {}, .up = {{0, 1, 0}}};
+  program.set("sun_direction", direction_in_view(scene.sun_direction, view));
+  program.set("up", direction_in_view(scene.up, view));
+  program.set("sun_light", day.sun);
+  program.set("sky_light", day.ambient({{0, 1, 0}}));
+  program.set("ground_light", day.ambient({{0, -1, 0}}));
+}
+
+}  // namespace firn

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <epoxy/gl.h>
+#include <firn/apps/viewer/orbit_camera.h>
+
+#include <string>
+#include <utility>
+
+namespace firn {
+
+/// A linked program of OpenGL 3.3, with its uniforms by name. All of gl_*.h, particle_cloud.h and solid_drawer.h need a
+/// current context.
+class GlProgram {
+ public:
+  /// Throws Error (resources) with the compiler's words. `name` is for that message.
+  GlProgram(const char* name, const std::string& vertex, const std::string& fragment);
+  ~GlProgram();
+  GlProgram(const GlProgram&) = delete;
+  GlProgram& operator=(const GlProgram&) = delete;
+
+  void use() const { glUseProgram(id_); }
+  void set(const char* uniform, float x) const { glUniform1f(at(uniform), x); }
+  void set(const char* uniform, int x) const { glUniform1i(at(uniform), x); }
+  void set(const char* uniform, const Vec3f& x) const { glUniform3fv(at(uniform), 1, x.e); }
+  void set(const char* uniform, float x, float y) const { glUniform2f(at(uniform), x, y); }
+  void set(const char* uniform, const Matrix4& m) const { glUniformMatrix4fv(at(uniform), 1, GL_FALSE, m.data()); }
+
+ private:
+  GLint at(const char* uniform) const { return glGetUniformLocation(id_, uniform); }
+  GLuint id_ = 0;
+};
+
+/// A name from glGen..., given back by glDelete....
+template <auto generate, auto remove>
+class GlName {
+ public:
+  GlName() { (*generate)(1, &id_); }
+  ~GlName() { (*remove)(1, &id_); }
+  GlName(const GlName&) = delete;
+  GlName& operator=(const GlName&) = delete;
+  GLuint id() const { return id_; }
+
+ private:
+  GLuint id_ = 0;
+};
+
+// epoxy's functions are pointers that change when they are first called: the address of the pointer is what is
+// constant.
+using GlBuffer = GlName<&epoxy_glGenBuffers, &epoxy_glDeleteBuffers>;
+using GlVertexArray = GlName<&epoxy_glGenVertexArrays, &epoxy_glDeleteVertexArrays>;
+using GlTexture = GlName<&epoxy_glGenTextures, &epoxy_glDeleteTextures>;
+
+/// Light of the day as GLSL: `vec3 lit(vec3 color, vec3 normal, float wrap)` with uniforms sun_direction, up (in the
+/// space of the normal), and `vec3 displayed(vec3 light)`, the tone of the ray-cast pictures (render/tone.h).
+extern const char* const kDaylightGlsl;
+/// Sets these uniforms; the directions are of world space, `view` turns them.
+void set_daylight(const GlProgram& program, const View& scene, const Matrix4& view);
+
+}  // namespace firn

@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <utility>
+
+#include "support/record.h"
+#include "viewer/reference_picture.h"
+#include "viewer/window_fixture.h"
+
+namespace firn {
+namespace {
+
+using namespace std::chrono_literals;
+using test::kBall;
+using test::Window;
+
+/// The look as a whole, against pictures that were looked at. The panel, which tells times, is left out. To renew them:
+/// FIRN_TEST_PICTURES=tests/viewer/pictures, and look.
+TEST_F(Window, LooksAsItDid) {
+  const std::string colliders =
+      "[[collider]]\nshape = \"box\"\nsize = [0.5, 0.5, 0.5]\nrotation = [0, 30, 0]\nposition = [1, 0.5, 0]\n"
+      "[[collider]]\nshape = \"sphere\"\nradius = 0.3\nposition = [0.4, 0.3, 1]\n";
+  const Scene scene = parse_scene(kBall + colliders, "look.toml");
+  SimulationPlayer player([&scene] { return Simulation::create(scene); });
+  ViewerWindow window(scene, player, options_);
+  ASSERT_TRUE(paused_at(window, 1));
+  Image previous;
+  for (const std::string name : {"material", "von_mises_stress"}) {
+    if (name != "material") {
+      press(window, GLFW_KEY_PERIOD);
+      press(window, GLFW_KEY_PERIOD);
+      ASSERT_TRUE(paused_at(window, 3));
+      const auto choices = window.controls().choices();
+      ASSERT_NE(std::find(choices.begin(), choices.end(), name), choices.end());
+      window.controls().color_by = name;
+      player.step();
+      ASSERT_TRUE(paused_at(window, 4));
+    }
+    Image picture = window.capture();
+    for (int y = 0; y < 200; ++y) std::fill(picture.pixel(0, y), picture.pixel(380, y), std::uint8_t(0));
+    const Image small = test::reduced(picture);
+    if (const char* folder = std::getenv("FIRN_TEST_PICTURES"))
+      write_png(std::string(folder) + "/" + name + ".png", small);
+    const Image reference = test::reference_picture(name);
+    EXPECT_LT(test::share_of_different(small, reference, 24), 0.02) << name;
+    if (!previous.rgb.empty()) {
+      EXPECT_GT(test::share_of_different(previous, reference, 24), 0.02) << "negative control";
+    }
+    previous = small;
+  }
+}
+
+/// What a million particles cost the processor in one picture: the copy of a snapshot, and the calls. Software OpenGL
+/// draws on the processor inside some of these calls; so they are also counted with one particle in as many calls.
+TEST_F(Window, CpuSideOfAMillionParticles) {
+  constexpr std::size_t kParticles = 1000000;
+  class Source final : public FrameSource {
+   public:
+    Source(std::size_t count, bool doubles) : count_(count), doubles_(doubles) { next(); }
+    void play() override {}
+    void pause() override {}
+    void step() override {}
+    void reset() override {}
+    void next() {
+      auto snapshot = std::make_shared<Snapshot>();
+      snapshot->particle_spacing = 0.01;
+      snapshot->materials = {{"stuff", "snow", "snow", 0, count_}};
+      std::vector<float> x(3 * count_);
+      for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>((i * 7919) % 1009) * 1e-3F;
+      for (const auto& [name, unit] : {std::pair("position", "m"), {"velocity", "m/s"}}) {
+        snapshot->columns.push_back({name, unit, "", 3, x});
+        if (doubles_) snapshot->columns.back().values = std::vector<double>(x.begin(), x.end());
+      }
+      const std::lock_guard lock(mutex_);
+      snapshot_ = snapshot;
+      ++status_.published;
+      status_.state = PlayState::paused;
+    }
+
+   private:
+    std::size_t count_;
+    bool doubles_;
+  };
+  const auto measure = [&](std::size_t count, const char* column, bool doubles) {
+    Source source(count, doubles);
+    ViewerWindow::Options options = options_;
+    options.width = options.height = 64;
+    ViewerWindow window(scene_, source, options);
+    window.controls().color_by = column;
+    ViewerWindow::Times least = {1e9, 1e9};
+    for (int i = 0; i < 4; ++i) {
+      source.next();
+      window.draw();
+      least.upload = std::min(least.upload, window.times().upload);
+      least.draw = std::min(least.draw, window.times().draw);
+    }
+    EXPECT_EQ(window.notes().drawn, count);
+    EXPECT_EQ(window.error(), 0U);
+    return least;
+  };
+  const auto look = measure(kParticles, "", false), column = measure(kParticles, "velocity", false);
+  const auto doubles = measure(kParticles, "velocity", true), calls = measure(1, "velocity", false);
+  test::record("upload_ms_by_material", 1e3 * look.upload);
+  test::record("upload_ms_by_velocity", 1e3 * column.upload);
+  test::record("upload_ms_by_velocity_in_double_precision", 1e3 * doubles.upload);
+  test::record("calls_ms", 1e3 * calls.draw);
+  test::record("calls_ms_with_software_vertices", 1e3 * column.draw);
+}
+
+/// Makes docs/images/viewer.png; FIRN_TEST_PICTURES names the folder to write it to.
+TEST_F(Window, DISABLED_PictureOfTheSnowScene) {
+  const Scene scene = load_scene(FIRN_SOURCE_DIR "/scenes/snow_cube.toml",
+                                 {"render.color_by=\"velocity\"", "resolution.particles=60000"});
+  SimulationPlayer player([&scene] { return Simulation::create(scene); });
+  ViewerWindow window(scene, player, {.width = 1120, .height = 700, .title = "Firn"});
+  player.play();
+  ASSERT_TRUE(player.wait([](const SourceStatus& s) { return s.frame.frame == 20; }, 600s));
+  player.pause();
+  ASSERT_TRUE(reaches(window, [](const SourceStatus& s) { return !s.busy && s.state == PlayState::paused; }));
+  drag(window, GLFW_MOUSE_BUTTON_LEFT, 60, 20);
+  rest(window);
+  rest(window);
+  write_png(std::string(std::getenv("FIRN_TEST_PICTURES")) + "/viewer.png", window.capture());
+}
+
+}  // namespace
+}  // namespace firn
