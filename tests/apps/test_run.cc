@@ -16,10 +16,8 @@ namespace fs = std::filesystem;
 class RunScene : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("firn run " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
+    std::string pattern = (fs::path(testing::TempDir()) / "firn run XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
     write("scene.toml", scene_text());
   }
   void TearDown() override { fs::remove_all(folder_); }
