@@ -5,8 +5,9 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
+#include <tuple>
 
 #include "support/random.h"
 
@@ -14,12 +15,6 @@ namespace firn {
 namespace {
 
 using test::Random;
-
-std::vector<std::uint32_t> all_of(std::size_t count) {
-  std::vector<std::uint32_t> movers(count);
-  std::iota(movers.begin(), movers.end(), 0u);
-  return movers;
-}
 
 /// Particles in random cells, sorted.
 template <class Real, int dim>
@@ -30,91 +25,153 @@ Particles<Real, dim> random_particles(std::size_t count, std::int64_t reach, Ran
     for (int d = 0; d < dim; ++d) x[d] = random.uniform(-static_cast<double>(reach), static_cast<double>(reach));
   }
   particles.append(positions, 1.0, Kernel::quadratic, {}, 1, 1, 0, 0);
-  particles.sort_by_cell(all_of(count));
+  particles.sort_by_block();
   return particles;
 }
 
-/// Ids in the order of (key, id).
 template <class Real, int dim>
-std::vector<std::uint32_t> sorted_ids(const Particles<Real, dim>& particles) {
-  std::vector<std::uint32_t> order = all_of(particles.size());
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::pair(particles.cell()[a], particles.id()[a]) < std::pair(particles.cell()[b], particles.id()[b]);
-  });
-  for (std::uint32_t& place : order) place = particles.id()[place];
-  return order;
+std::vector<std::uint32_t> ids_of(const Particles<Real, dim>& particles) {
+  std::vector<std::uint32_t> ids(particles.size());
+  for (std::size_t p = 0; p < ids.size(); ++p) ids[p] = particles.id()[p];
+  return ids;
 }
 
-template <int dim>
-void expect_ranges_of_blocks(const Particles<double, dim>& particles) {
-  std::uint32_t next = 0;
-  std::uint64_t previous = 0;
-  for (const BlockRange& range : particles.blocks()) {
-    EXPECT_EQ(range.begin, next);
-    EXPECT_LT(range.begin, range.end);
-    if (next > 0) {
-      EXPECT_GT(range.block, previous);
+template <class Real, int dim>
+void expect_blocks_hold_their_particles(Particles<Real, dim>& particles) {
+  std::size_t next = 0;
+  for (std::size_t b = 0; b < particles.block_count(); ++b) {
+    ASSERT_EQ(particles.first_of_block(b), next);
+    ASSERT_GT(particles.block_size(b), 0u);
+    if (b > 0) {
+      ASSERT_GT(particles.block_key(b), particles.block_key(b - 1));
     }
-    for (std::uint32_t p = range.begin; p < range.end; ++p) {
-      EXPECT_EQ(block_of_cell<dim>(particles.cell()[p]), range.block);
+    const auto columns = particles.columns(b);
+    for (std::uint32_t i = 0; i < particles.block_size(b); ++i, ++next) {
+      ASSERT_EQ(block_of_cell<dim>(particles.cell(next)), particles.block_key(b));
+      ASSERT_EQ(columns.id[i], particles.id()[next]);
+      ASSERT_EQ(columns.offset[dim - 1][i], particles.real(Field::offset, dim - 1)[next]);
     }
-    next = range.end;
-    previous = range.block;
   }
-  EXPECT_EQ(next, particles.size());
+  ASSERT_EQ(next, particles.size());
 }
 
-template <int dim>
+/// Moves a share of the particles by up to two cells on one axis. Returns the order that sorting has to give: by block;
+/// in it those that stay, as they lay; then those that come, by cell and id.
+template <class Real, int dim>
+std::vector<std::uint32_t> move_some(Particles<Real, dim>& particles, double share, Random& random) {
+  using Key = std::tuple<std::uint64_t, int, std::uint64_t, std::uint32_t>;
+  std::vector<Key> keys;
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    const std::uint64_t before = block_of_cell<dim>(particles.cell(p));
+    if (random.uniform(0, 1) < share) {
+      Index<dim> cell = cell_of_key<dim>(particles.cell(p));
+      cell[random.next() % dim] += static_cast<std::int64_t>(random.next() % 5) - 2;
+      particles.set_cell(p, cell_key<dim>(cell));
+      EXPECT_EQ(particles.cell(p), cell_key<dim>(cell));
+    }
+    const std::uint64_t cell = particles.cell(p), block = block_of_cell<dim>(cell);
+    keys.emplace_back(block, block == before ? 0 : 1, block == before ? p : cell, particles.id()[p]);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::uint32_t> ids;
+  for (const Key& key : keys) ids.push_back(std::get<3>(key));
+  return ids;
+}
+
+template <class Real, int dim>
 void expect_sorts() {
   Random random(3);
   for (const std::size_t count : {0u, 1u, 2u, 3u, 17u, 300u, 5000u, 60000u}) {
     for (const double share : {0.0, 0.01, 0.3, 1.0}) {
-      auto particles = random_particles<double, dim>(count, 6, random);
-      std::vector<std::uint32_t> movers;
-      for (std::uint32_t p = 0; p < count; ++p) {
-        if (random.uniform(0, 1) >= share) continue;
-        Index<dim> cell = cell_of_key<dim>(particles.cell()[p]);
-        cell[random.next() % dim] += static_cast<std::int64_t>(random.next() % 5) - 2;
-        particles.cell()[p] = cell_key<dim>(cell);
-        movers.push_back(p);
-      }
+      auto particles = random_particles<Real, dim>(count, 6, random);
       // Every column has to travel along: all carry the id.
+      const auto columns = [&](std::size_t p) -> std::array<Real, 4> {
+        return {particles.real(Field::stress, 3)[p], particles.history(0)[p], particles.real(Field::grad_v, dim)[p],
+                particles.real(Field::offset)[p]};
+      };
       for (std::size_t p = 0; p < count; ++p) {
-        particles.real(Field::stress, 3)[p] = particles.history(0)[p] = particles.id()[p];
-        particles.real(Field::grad_v, dim)[p] = particles.id()[p];
+        const auto id = static_cast<Real>(particles.id()[p]);
+        particles.real(Field::stress, 3)[p] = particles.history(0)[p] = id;
+        particles.real(Field::grad_v, dim)[p] = particles.real(Field::offset)[p] = id;
       }
-      const auto expected = sorted_ids(particles);
-      particles.sort_by_cell(movers);
-      ASSERT_EQ(std::vector<std::uint32_t>(particles.id(), particles.id() + count), expected) << count << ' ' << share;
-      for (std::size_t p = 0; p < count; ++p) {
-        ASSERT_EQ(particles.real(Field::stress, 3)[p], expected[p]);
-        ASSERT_EQ(particles.real(Field::grad_v, dim)[p], expected[p]);
-        ASSERT_EQ(particles.history(0)[p], expected[p]);
+      for (int round = 0; round < 2; ++round) {
+        const std::vector<std::uint32_t> expected = move_some(particles, share, random);
+        particles.sort_by_block();
+        ASSERT_EQ(ids_of(particles), expected) << count << ' ' << share;
+        for (std::size_t p = 0; p < count; ++p) {
+          for (const Real value : columns(p)) ASSERT_EQ(value, static_cast<Real>(expected[p]));
+        }
+        expect_blocks_hold_their_particles(particles);
       }
-      expect_ranges_of_blocks<dim>(particles);
     }
   }
 }
 
-TEST(SortByCell, IsASortByKeyThenId) {
-  expect_sorts<2>();
-  expect_sorts<3>();
+TEST(SortByBlock, MovesOnlyWhatHasLeftItsBlock) {
+  expect_sorts<double, 2>();
+  expect_sorts<float, 3>();
 }
 
-TEST(SortByCell, IsTheSameOnManyThreads) {
+TEST(SortByBlock, IsTheSameOnManyThreads) {
   for (const int threads : {2, 8}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    tbb::task_arena(threads).execute([] { expect_sorts<3>(); });
+    tbb::task_arena(threads).execute([] { expect_sorts<double, 3>(); });
   }
 }
 
-TEST(SortByCell, AllMoversIntoOneCellLieById) {
+TEST(SortByBlock, NewParticlesLieByCellThenId) {
+  Random random(5);
+  const auto particles = random_particles<float, 3>(100000, 5, random);
+  for (std::size_t p = 1; p < particles.size(); ++p) {
+    const std::uint64_t a = particles.cell(p - 1), b = particles.cell(p);
+    ASSERT_LE(block_of_cell<3>(a), block_of_cell<3>(b));
+    if (a == b) {
+      ASSERT_LT(particles.id()[p - 1], particles.id()[p]);
+    }
+  }
+}
+
+TEST(SortByBlock, EverythingIntoOneCellLiesById) {
   Random random(4);
   auto particles = random_particles<double, 2>(40000, 50, random);
-  std::fill_n(particles.cell(), particles.size(), cell_key<2>({3, -5}));
-  particles.sort_by_cell(all_of(particles.size()));
-  EXPECT_EQ(std::vector<std::uint32_t>(particles.id(), particles.id() + particles.size()), all_of(particles.size()));
-  ASSERT_EQ(particles.blocks().size(), 1u);
+  for (std::size_t p = 0; p < particles.size(); ++p) particles.set_cell(p, cell_key<2>({103, -105}));
+  particles.sort_by_block();
+  const std::vector<std::uint32_t> ids = ids_of(particles);
+  EXPECT_TRUE(std::is_sorted(ids.begin(), ids.end()));
+  EXPECT_EQ(particles.block_count(), 1u);
+}
+
+TEST(Particles, RemoveKeepsTheOrderOfTheOthers) {
+  Random random(6);
+  auto particles = random_particles<float, 3>(5000, 6, random);
+  const std::vector<std::uint32_t> before = ids_of(particles);
+  std::vector<std::uint32_t> removed, kept;
+  for (std::uint32_t p = 0; p < before.size(); ++p) {
+    if (random.uniform(0, 1) < 0.3) {
+      removed.push_back(p);
+    } else {
+      kept.push_back(before[p]);
+    }
+  }
+  particles.remove(removed);
+  EXPECT_EQ(ids_of(particles), kept);
+  expect_blocks_hold_their_particles(particles);
+}
+
+TEST(Particles, ACopyIsEqualAndItsOwn) {
+  Random random(8);
+  auto particles = random_particles<double, 3>(3000, 6, random);
+  const Particles<double, 3> copy = particles;
+  EXPECT_EQ(copy.hash(), particles.hash());
+  particles.real(Field::strain, 4)[7] += 1e-15;
+  EXPECT_NE(copy.hash(), particles.hash());
+  EXPECT_EQ(ids_of(copy), ids_of(particles));
+}
+
+TEST(Particles, ABodyNumberThatDoesNotFitIsRefused) {
+  Particles<float, 2> particles({});
+  const std::vector<Vec<double, 2>> positions = {{{0, 0}}};
+  EXPECT_THROW(particles.append(positions, 1, Kernel::quadratic, {}, 1, 1, 0, 65536), Error);
 }
 
 TEST(CellPosition, KeepsItsPrecisionFarFromTheOrigin) {

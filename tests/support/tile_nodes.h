@@ -1,6 +1,7 @@
 #pragma once
 
 #include <firn/integrators/world.h>
+#include <firn/transfer/tile.h>
 
 namespace firn::test {
 
@@ -15,10 +16,12 @@ void for_each_tile_node(const World<Real, dim>& world, const F& f) {
     for (int n = 0; n < power(side, dim); ++n) {
       Vec<double, dim> x;
       int rest = n;
+      int place = 0;
       for (int d = dim - 1; d >= 0; --d, rest /= side) {
         x[d] = grid.dx() * static_cast<double>(origin[static_cast<std::size_t>(d)] + rest % side);
+        place += rest % side * tile_stride<dim>(grid.kernel(), d);
       }
-      f(x, grid.tile(b) + n * kNodeWidth);
+      f(x, grid.tile(b) + place);
     }
   }
 }

@@ -59,7 +59,7 @@ void move_to_faces(Particles<Real, dim>& particles, Random& random) {
       zero, one, std::nextafter(zero, one), std::nextafter(one, zero), Real(0.5), Real(1e-30), Real(1e-8), Real(0.3)};
   for (std::size_t p = 0; p < particles.size(); p += 3) {
     bool inside = true;
-    for (const std::int64_t c : cell_of_key<dim>(particles.cell()[p])) inside = inside && c >= -1 && c <= 1;
+    for (const std::int64_t c : cell_of_key<dim>(particles.cell(p))) inside = inside && c >= -1 && c <= 1;
     for (int d = 0; d < dim && inside; ++d) {
       particles.real(Field::offset, d)[p] = kPlaces[random.next() % std::size(kPlaces)];
     }
@@ -132,18 +132,32 @@ World<Real, dim> comparison_world(Layout layout, const TransferSettings& setting
 
 inline constexpr double kTimeStep = 0.008;  // s; the fastest particles move a tenth of a cell
 
-/// Makes the particle columns of `to` those of `from`: what prepare computes differs in the last bits between targets.
+/// f(name, component count, column(particles, component)) for every column of real numbers.
+template <class Real, int dim, class F>
+void for_each_real_column(const Particles<Real, dim>& particles, const F& f) {
+  for (const Field field : {Field::offset, Field::strain, Field::mass, Field::rest_volume, Field::velocity,
+                            Field::affine, Field::stress, Field::grad_v, Field::acceleration}) {
+    if (!particles.has(field)) continue;
+    f(std::string(kFields[static_cast<std::size_t>(field)].name), particles.component_count(field),
+      [field](auto& p, int c) { return p.real(field, c); });
+  }
+  for (int h = 0; h < particles.history_count(); ++h) {
+    f(particles.history_spec(h).name, 1, [h](auto& p, int) { return p.history(h); });
+  }
+}
+
+/// Makes the real columns of `to` those of `from`, whose particles lie in the same order: what prepare computes differs
+/// in the last bits between targets.
 template <class Real, int dim>
 void copy_columns(const World<Real, dim>& from, World<Real, dim>& to) {
   for (std::size_t m = 0; m < from.materials.size(); ++m) {
-    const ColumnStore& source = from.materials[m].particles.store();
-    ColumnStore& target = to.materials[m].particles.store();
-    for (int c = 0; c < source.column_count(); ++c) {
-      for (int k = 0; k < source.spec(c).components; ++k) {
-        std::memcpy(target.component<std::byte>(c, k), source.component<std::byte>(c, k),
-                    source.size() * static_cast<std::size_t>(source.spec(c).element_bytes));
+    const auto& source = from.materials[m].particles;
+    auto& target = to.materials[m].particles;
+    for_each_real_column(source, [&](const std::string&, int components, const auto& column) {
+      for (int c = 0; c < components; ++c) {
+        for (std::size_t p = 0; p < source.size(); ++p) column(target, c)[p] = column(source, c)[p];
       }
-    }
+    });
   }
 }
 
@@ -180,15 +194,12 @@ std::map<std::string, double> column_differences(const World<Real, dim>& a, cons
           const auto x = q.position(j, dx, kernel);
           return x[c];
         });
-    const ColumnStore &s = p.store(), &t = q.store();
-    for (int column = 0; column < s.column_count(); ++column) {
-      const std::string& name = s.spec(column).name;
-      if (name == "cell" || name == "offset" || name == "id" || name == "body") continue;
+    for_each_real_column(p, [&](const std::string& name, int components, const auto& column) {
+      if (name == "offset") return;
       compare(
-          name, s.spec(column).components,
-          [&](std::size_t i, int c) { return static_cast<double>(s.component<Real>(column, c)[i]); },
-          [&](std::size_t j, int c) { return static_cast<double>(t.component<Real>(column, c)[j]); });
-    }
+          name, components, [&](std::size_t i, int c) { return static_cast<double>(column(p, c)[i]); },
+          [&](std::size_t j, int c) { return static_cast<double>(column(q, c)[j]); });
+    });
   }
   return result;
 }

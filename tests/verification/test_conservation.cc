@@ -137,7 +137,7 @@ TEST(Conservation, FlipKeepsAngularMomentumWithoutForces3D) {
 template <class Real, int dim>
 void expect_grid_holds_totals(const TransferSettings& settings, double gate) {
   auto world = spinning_cloud<Real, dim>(settings, kStiffness);
-  sort_by_cell(world);
+  sort_by_block(world);
   scatter(world, 0);
   double mass = 0;
   Vec3d momentum = {}, angular_momentum = {};

@@ -52,7 +52,7 @@ std::vector<std::uint64_t> hashes_after(const TransferSettings& settings, int th
     for (int s = 0; s < steps; ++s) {
       EXPECT_FALSE(step_explicit(world, choose_time_step(world, {}).dt).failure);
     }
-    for (const auto& material : world.materials) hashes.push_back(material.particles.store().hash());
+    for (const auto& material : world.materials) hashes.push_back(material.particles.hash());
     hashes.push_back(std::bit_cast<std::uint64_t>(world.t));
     hashes.push_back(std::bit_cast<std::uint64_t>(totals(world).kinetic_energy));
   });
@@ -77,18 +77,18 @@ TEST(Determinism, SameBitsForAnyNumberOfThreadsDouble) { expect_same_bits<double
 TEST(Determinism, ControlHashSeesEveryBit) {
   auto world = snow_and_jelly<float>({});
   auto& particles = world.materials[0].particles;
-  const std::uint64_t before = particles.store().hash();
+  const std::uint64_t before = particles.hash();
   for (const Field field : {Field::offset, Field::velocity, Field::affine, Field::strain, Field::stress, Field::mass}) {
     float& number = particles.real(field)[particles.size() - 1];
     const float kept = number;
     number = std::bit_cast<float>(std::bit_cast<std::uint32_t>(number) ^ 1u);
-    EXPECT_NE(particles.store().hash(), before);
+    EXPECT_NE(particles.hash(), before);
     number = kept;
   }
   particles.id()[0] ^= 1u;
-  EXPECT_NE(particles.store().hash(), before);
+  EXPECT_NE(particles.hash(), before);
   particles.id()[0] ^= 1u;
-  EXPECT_EQ(particles.store().hash(), before);
+  EXPECT_EQ(particles.hash(), before);
 }
 
 /// Control: the hash of a run sees one bit of one particle's mass, 60 steps later.
@@ -100,7 +100,7 @@ TEST(Determinism, ControlOneBitChangesTheRun) {
   auto untouched = snow_and_jelly<float>({});
   for (int s = 0; s < 20; ++s) step_explicit(untouched, choose_time_step(untouched, {}).dt);
   const auto &a = world.materials[1].particles, &b = untouched.materials[1].particles;
-  EXPECT_NE(a.store().hash(), b.store().hash()) << "the jelly has felt it";
+  EXPECT_NE(a.hash(), b.hash()) << "the jelly has felt it";
 }
 
 }  // namespace

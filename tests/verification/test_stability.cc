@@ -67,8 +67,8 @@ void expect_report() {
   record("steps_to_failure", steps);
   ASSERT_TRUE(report.failure);
   EXPECT_EQ(report.failure->material, 0u);
-  ASSERT_LT(report.failure->particle, world.particle_count());
-  EXPECT_EQ(report.failure->id, world.materials[0].particles.id()[report.failure->particle]);
+  EXPECT_LT(report.failure->id, world.particle_count());
+  EXPECT_FALSE(report.failure->strain.empty());
   EXPECT_FALSE(report.failure->cause.empty());
   // Whoever goes on regardless gets nonsense, but no crash.
   for (int s = 0; s < 20; ++s) EXPECT_TRUE(step_explicit(world, dt).failure);

@@ -70,7 +70,7 @@ std::size_t differing_numbers(const TransferSettings& settings, const Index<dim>
           different += std::bit_cast<Bits>(a.real(field, c)[p]) != std::bit_cast<Bits>(b.real(field, c)[q]);
         }
       }
-      const Index<dim> cell_a = cell_of_key<dim>(a.cell()[p]), cell_b = cell_of_key<dim>(b.cell()[q]);
+      const Index<dim> cell_a = cell_of_key<dim>(a.cell(p)), cell_b = cell_of_key<dim>(b.cell(q));
       for (std::size_t d = 0; d < dim; ++d) different += cell_b[d] - cell_a[d] != shift[d];
     }
   }

@@ -91,10 +91,13 @@ BenchResult run_bench_case(const BenchCase& bench) {
   std::vector<double> rates;
   arena.execute([&] {
     prepare(world);
+    double next_dt = choose_time_step(world, TimeStepLimits()).dt;
     for (int step = 0; step < kWarmUpSteps + bench.steps; ++step) {
       if (step == kWarmUpSteps) world.verb_times = {};
       const auto start = Clock::now();
-      const StepReport report = step_explicit(world, choose_time_step(world, TimeStepLimits()).dt);
+      const bool last = step + 1 == kWarmUpSteps + bench.steps;
+      const StepReport report = step_explicit(
+          world, next_dt, [&] { return next_dt = last ? 0 : choose_time_step(world, TimeStepLimits()).dt; });
       if (report.failure) throw Error(ErrorKind::numerical, fmt::format("the benchmark's {} failed", bench.model));
       if (step >= kWarmUpSteps) rates.push_back(count / seconds_since(start));
     }

@@ -4,6 +4,7 @@
 #include <firn/integrators/verbs.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace firn {
@@ -13,7 +14,7 @@ namespace {
 template <class Real, int dim>
 void sum_tiles(const Grid<Real, dim>& grid, std::size_t g, int layer, Real* nodes) {
   std::fill_n(nodes, kBlockNodes<dim> * kNodeWidth, Real(0));
-  const int side = tile_side(grid.kernel()), beyond = side - kBlockSide;
+  const int side = tile_side(grid.kernel()), row = tile_row(grid.kernel()), beyond = side - kBlockSide;
   for (int o = 0; o < kReach<dim>; ++o) {
     const std::int32_t b = grid.particle_block_of(g, o);
     if (b < 0) continue;
@@ -27,7 +28,7 @@ void sum_tiles(const Grid<Real, dim>& grid, std::size_t g, int layer, Real* node
     for (int i = 0; i < count[0]; ++i) {
       for (int j = 0; j < count[1]; ++j) {
         Real* target = nodes + (i * kBlockSide + j) * kBlockSide * kNodeWidth;
-        const Real* source = tile + (((from[0] + i) * side + from[1] + j) * side + from[2]) * kNodeWidth;
+        const Real* source = tile + (((from[0] + i) * side + from[1] + j) * row + from[2]) * kNodeWidth;
         for (int k = 0; k < count[2] * kNodeWidth; ++k) target[k] += source[k];
       }
     }
@@ -88,6 +89,28 @@ double apply_colliders(std::span<const PosedCollider<dim>* const> colliders, std
 }  // namespace
 
 template <class Real, int dim>
+double largest_speed(const Real* nodes) {
+  Real largest = 0;
+  for (int n = 0; n < kBlockNodes<dim>; ++n) {
+    Real square = 0;
+    for (int i = 0; i < dim; ++i) square += nodes[n * kNodeWidth + i] * nodes[n * kNodeWidth + i];
+    largest = std::max(largest, square);
+  }
+  return std::sqrt(static_cast<double>(largest));
+}
+
+/// No particle can be faster after G2P: PIC and APIC velocities are weighted means of node velocities, FLIP adds a
+/// weighted mean of their changes to what the particle has.
+template <class Real, int dim>
+double bound_on_speed(const World<Real, dim>& world, double grid_speed, double grid_change) {
+  const double flip = world.transfer.flip;
+  if (flip == 0) return grid_speed;
+  double particle_speed = 0;
+  for (const auto& material : world.materials) particle_speed = std::max(particle_speed, material.max_speed);
+  return (1 - flip) * grid_speed + flip * (particle_speed + grid_change);
+}
+
+template <class Real, int dim>
 void update_velocity(World<Real, dim>& world, double dt) {
   const VerbTimer timer(world.verb_times, Verb::update_velocity);
   Grid<Real, dim>& grid = world.grid;
@@ -95,7 +118,10 @@ void update_velocity(World<Real, dim>& world, double dt) {
   Vec<Real, dim> gravity_impulse;
   for (int i = 0; i < dim; ++i) gravity_impulse[i] = static_cast<Real>(dt * world.gravity[i]);
   const auto blocks = grid.node_blocks();
-  std::vector<double> collider_speeds(blocks.size());
+  struct Speeds {
+    double collider = 0, grid = 0, change = 0;
+  };
+  std::vector<Speeds> speeds(blocks.size());
   parallel_each(blocks.size(), [&](std::size_t g) {
     Real* nodes = grid.nodes(g);
     Real* change = grid.has_velocity_change() ? grid.velocity_change(g) : nullptr;
@@ -103,10 +129,18 @@ void update_velocity(World<Real, dim>& world, double dt) {
     if (change != nullptr) sum_tiles(grid, g, 1, change);
     momentum_to_velocity<Real, dim>(nodes, change, gravity_impulse);
     const auto near = block_colliders.near(blocks[g], 0);
-    if (!near.empty()) collider_speeds[g] = apply_colliders<Real, dim>(near, blocks[g], grid.dx(), nodes, change);
+    if (!near.empty()) speeds[g].collider = apply_colliders<Real, dim>(near, blocks[g], grid.dx(), nodes, change);
+    speeds[g].grid = largest_speed<Real, dim>(nodes);
+    if (change != nullptr) speeds[g].change = largest_speed<Real, dim>(change);
   });
-  world.max_collider_speed = 0;
-  for (const double speed : collider_speeds) world.max_collider_speed = std::max(world.max_collider_speed, speed);
+  Speeds largest;
+  for (const Speeds& block : speeds) {
+    largest.collider = std::max(largest.collider, block.collider);
+    largest.grid = std::max(largest.grid, block.grid);
+    largest.change = std::max(largest.change, block.change);
+  }
+  world.max_collider_speed = largest.collider;
+  world.max_speed = bound_on_speed(world, largest.grid, largest.change);
 }
 
 #define FIRN_INSTANTIATE(Real, dim) template void update_velocity<Real, dim>(World<Real, dim>&, double);

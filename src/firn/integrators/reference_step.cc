@@ -1,4 +1,5 @@
 #include <firn/integrators/reference_step.h>
+#include <firn/integrators/verbs.h>
 #include <firn/materials/models-inl.h>
 #include <firn/transfer/reference.h>
 
@@ -14,8 +15,16 @@ template <class Real, int dim>
 void note_failure(StepReport& report, const World<Real, dim>& world, std::size_t material, std::size_t particle,
                   std::string_view cause) {
   if (report.failure) return;
-  const auto p = static_cast<std::uint32_t>(particle);
-  report.failure = {material, p, world.materials[material].particles.id()[p], cause};
+  const auto& particles = world.materials[material].particles;
+  report.failure = {material, particles.id()[particle], cause};
+  const auto x = particles.position(particle, world.grid.dx(), world.grid.kernel());
+  for (int i = 0; i < dim; ++i) {
+    report.failure->position.push_back(x[i]);
+    report.failure->velocity.push_back(static_cast<double>(particles.real(Field::velocity, i)[particle]));
+  }
+  for (int e = 0; e < dim * dim; ++e) {
+    report.failure->strain.push_back(static_cast<double>(particles.real(Field::strain, e)[particle]));
+  }
 }
 
 template <class Real, int dim>
@@ -40,13 +49,14 @@ Vec<double, dim> admissible(const std::vector<PosedCollider<dim>>& colliders, co
 template <class Real, int dim>
 void update_velocity(World<Real, dim>& world, const std::vector<PosedCollider<dim>>& colliders, double dt,
                      ReferenceGrid<dim>& grid) {
-  world.max_collider_speed = 0;
+  world.max_collider_speed = world.max_speed = 0;
   for (auto& [index, node] : grid) {
     // As in the fast step, a mass that a Real cannot hold as a normal number is none.
     if (!(node.mass > static_cast<double>(std::numeric_limits<Real>::min()))) continue;
     Vec<double, dim> x;
     for (int d = 0; d < dim; ++d) x[d] = world.grid.dx() * static_cast<double>(index[static_cast<std::size_t>(d)]);
     node.velocity = admissible(colliders, x, (1 / node.mass) * node.momentum + dt * world.gravity);
+    world.max_speed = std::max(world.max_speed, norm(node.velocity));
     node.velocity_change = node.velocity - (1 / node.mass) * node.momentum_before;
     for (const auto& collider : colliders) {
       if (!(collider.distance(x) < 0)) continue;
@@ -63,7 +73,6 @@ void move(World<Real, dim>& world, std::size_t m, const std::vector<PosedCollide
   auto& particles = material.particles;
   const double dx = world.grid.dx();
   material.max_speed = 0;
-  std::vector<std::uint32_t> movers;
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const auto x = particles.position(p, dx, world.grid.kernel());
     Vec<double, dim> v;
@@ -73,7 +82,7 @@ void move(World<Real, dim>& world, std::size_t m, const std::vector<PosedCollide
     for (int i = 0; i < dim; ++i) particles.real(Field::velocity, i)[p] = static_cast<Real>(v[i]);
     material.max_speed = std::max(material.max_speed, norm(v));
 
-    Index<dim> cell = cell_of_key<dim>(particles.cell()[p]);
+    Index<dim> cell = cell_of_key<dim>(particles.cell(p));
     Vec<Real, dim> offset;
     bool finite = true;
     for (int d = 0; d < dim; ++d) {
@@ -92,13 +101,8 @@ void move(World<Real, dim>& world, std::size_t m, const std::vector<PosedCollide
       continue;
     }
     for (int d = 0; d < dim; ++d) particles.real(Field::offset, d)[p] = offset[d];
-    if (particles.cell()[p] == cell_key<dim>(cell)) continue;
-    particles.cell()[p] = cell_key<dim>(cell);
-    movers.push_back(static_cast<std::uint32_t>(p));
+    particles.set_cell(p, cell_key<dim>(cell));
   }
-  std::vector<std::uint32_t> all;
-  std::set_union(material.movers.begin(), material.movers.end(), movers.begin(), movers.end(), std::back_inserter(all));
-  material.movers = std::move(all);
 }
 
 /// Strain update, return map and stress of one material.
@@ -163,7 +167,7 @@ StepReport reference_step(World<Real, dim>& world, double dt) {
   std::vector<PosedCollider<dim>> colliders;
   for (const auto& collider : world.colliders) colliders.emplace_back(collider, world.t + dt);
 
-  if (world.body_force) evaluate_body_force(world);
+  if (world.body_force) evaluate_body_force<Real, dim>(world);
   ReferenceGrid<dim> grid;
   for (const auto& material : world.materials) {
     reference_scatter<Real, dim>(material.particles, dx, dt, world.transfer, period, grid);
@@ -176,7 +180,9 @@ StepReport reference_step(World<Real, dim>& world, double dt) {
   for (std::size_t m = 0; m < world.materials.size(); ++m) {
     update_stress(world, m, dt, report, HWY_NAMESPACE::AllModels());
   }
+  sort_by_block(world);
   world.t += dt;
+  world.scattered_dt.reset();
   ++world.steps;
   return report;
 }

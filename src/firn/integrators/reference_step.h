@@ -8,8 +8,8 @@ namespace firn {
 /// material models on plain numbers: slow, serial, in double precision, and short enough to be checked against the
 /// papers by reading.
 ///
-/// Leaves the particles where they lie; those that have changed cell wait in the movers for the next step_explicit, so
-/// the two kinds of step may alternate. A particle whose motion is not finite keeps its place.
+/// Ends on a drained state, so the two kinds of step may alternate. A particle whose motion is not finite keeps its
+/// place. With FLIP, World::max_speed is the grid's.
 template <class Real, int dim>
 StepReport reference_step(World<Real, dim>& world, double dt);
 

@@ -1,31 +1,44 @@
 #include <firn/integrators/step.h>
 #include <firn/integrators/verbs.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace firn {
 
 template <class Real, int dim>
-StepReport step_explicit(World<Real, dim>& world, double dt) {
+StepReport step_explicit(World<Real, dim>& world, double dt, const NextTimeStep& next) {
   StepReport report;
-  sort_by_cell(world);
-  scatter(world, dt);
+  if (world.scattered_dt != dt) scatter(world, dt);
   update_velocity(world, dt);
-  gather(world, dt, report);
-  update_stress(world, dt, report);
-  world.t += dt;
+  const double next_dt = next();
+  if (next_dt > 0 && world.fused) {
+    gather_to_scatter(world, dt, next_dt, report);
+    world.t += dt;
+  } else {
+    gather(world, dt, report);
+    update_stress(world, dt, report);
+    sort_by_block(world);
+    world.t += dt;
+    if (next_dt > 0) scatter(world, next_dt);
+  }
+  world.scattered_dt = next_dt > 0 ? std::optional(next_dt) : std::nullopt;
   ++world.steps;
   return report;
 }
 
 template <class Real, int dim>
+StepReport step_explicit(World<Real, dim>& world, double dt) {
+  return step_explicit(world, dt, [] { return 0.0; });
+}
+
+template <class Real, int dim>
 StepReport prepare(World<Real, dim>& world) {
   StepReport report;
+  world.scattered_dt.reset();
+  world.max_speed = 0;
   for (auto& material : world.materials) {
     const auto& particles = material.particles;
-    material.movers.resize(particles.size());
-    std::iota(material.movers.begin(), material.movers.end(), 0u);
     double square = 0;
     for (std::size_t p = 0; p < particles.size(); ++p) {
       double s = 0;
@@ -33,17 +46,19 @@ StepReport prepare(World<Real, dim>& world) {
         const double v = particles.real(Field::velocity, i)[p];
         s += v * v;
       }
-      square = s > square ? s : square;
+      square = std::max(square, s);
     }
     material.max_speed = std::sqrt(square);
+    world.max_speed = std::max(world.max_speed, material.max_speed);
   }
-  sort_by_cell(world);
+  sort_by_block(world);
   update_stress(world, 0, report);
   return report;
 }
 
-#define FIRN_INSTANTIATE(Real, dim)                                        \
-  template StepReport step_explicit<Real, dim>(World<Real, dim>&, double); \
+#define FIRN_INSTANTIATE(Real, dim)                                                             \
+  template StepReport step_explicit<Real, dim>(World<Real, dim>&, double);                      \
+  template StepReport step_explicit<Real, dim>(World<Real, dim>&, double, const NextTimeStep&); \
   template StepReport prepare<Real, dim>(World<Real, dim>&);
 FIRN_INSTANTIATE(float, 2)
 FIRN_INSTANTIATE(float, 3)

@@ -19,9 +19,9 @@ TimeStep choose_time_step(const World<Real, dim>& world, const TimeStepLimits& l
   const double dx = world.grid.dx();
   for (std::size_t m = 0; m < world.materials.size(); ++m) {
     const auto& material = world.materials[m];
-    lower_to(limits.particle_cfl * dx / material.max_speed, "particle_cfl", static_cast<int>(m));
-    lower_to(limits.elastic_cfl * dx / (material.wave_speed + material.max_speed), "elastic_wave", static_cast<int>(m));
+    lower_to(limits.elastic_cfl * dx / (material.wave_speed + world.max_speed), "elastic_wave", static_cast<int>(m));
   }
+  lower_to(limits.particle_cfl * dx / world.max_speed, "particle_cfl", -1);
   lower_to(limits.particle_cfl * dx / world.max_collider_speed, "collider_speed", -1);
   return step;
 }

@@ -25,9 +25,11 @@ struct TimeStep {
   std::string describe(const std::vector<std::string>& material_names) const;
 };
 
-/// The largest time step that the limits allow at the speeds of the last step. Elastic waves become unstable beyond 1.0
-/// cells per step for APIC (mls form, one particle per cell and axis; 1.2 with more) and beyond 0.6 to 0.9 for FLIP
-/// (docs/verification.md, V41).
+/// The largest time step that the limits allow at the grid's speeds and the last known speeds of elastic waves: what is
+/// known when a step has updated the grid, and its particles may be on their way already. The limit on waves leaves
+/// room for them to speed up by half within a step. Elastic waves become unstable beyond 1.0 cells per step for APIC
+/// (mls form, one particle per cell and axis; 1.2 with more) and beyond 0.6 to 0.9 for FLIP (docs/verification.md,
+/// V41).
 template <class Real, int dim>
 TimeStep choose_time_step(const World<Real, dim>& world, const TimeStepLimits& limits);
 

@@ -7,10 +7,6 @@
 /// threads.
 namespace firn {
 
-/// Restores the particles' order and activates the grid blocks around them.
-template <class Real, int dim>
-void sort_by_cell(World<Real, dim>& world);
-
 /// P2G: mass, momentum and the impulse of internal forces, each block into its own tile.
 template <class Real, int dim>
 void scatter(World<Real, dim>& world, double dt);
@@ -26,5 +22,19 @@ void gather(World<Real, dim>& world, double dt, StepReport& report);
 /// Strain update, return map and Kirchhoff stress: one loop per material.
 template <class Real, int dim>
 void update_stress(World<Real, dim>& world, double dt, StepReport& report);
+
+/// Brings particles that have left their block to the one they are in, and activates the grid around all of them.
+template <class Real, int dim>
+void sort_by_block(World<Real, dim>& world);
+
+/// gather, update_stress, sort_by_block and the scatter of the next step, batch by batch while the particles are in
+/// cache: position, strain and history are read and written once a step, everything else stays in cache. The same bits
+/// as one after the other, but velocity, C_p and stress are not stored.
+template <class Real, int dim>
+void gather_to_scatter(World<Real, dim>& world, double dt, double next_dt, StepReport& report);
+
+/// Creates the grid's blocks where the particles' blocks are.
+template <class Real, int dim>
+void activate_blocks(World<Real, dim>& world);
 
 }  // namespace firn

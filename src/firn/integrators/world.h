@@ -9,16 +9,18 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace firn {
 
-/// The verbs of one step, in order: the headings of docs/algorithm.md and the rows of `firn bench`.
-enum class Verb { sort_by_cell, scatter, update_velocity, gather, update_stress };
-inline constexpr std::array<std::string_view, 5> kVerbNames = {"sort_by_cell", "scatter", "update_velocity", "gather",
-                                                               "update_stress"};
+/// The verbs of one step, in order: the headings of docs/algorithm.md and the rows of `firn bench`. The last one does
+/// the work of three others and of the next step's scatter, block by block.
+enum class Verb { scatter, update_velocity, gather, update_stress, sort_by_block, gather_to_scatter };
+inline constexpr std::array<std::string_view, 6> kVerbNames = {"scatter",       "update_velocity", "gather",
+                                                               "update_stress", "sort_by_block",   "gather_to_scatter"};
 
 /// Seconds spent in each verb since the start.
 using VerbTimes = std::array<double, kVerbNames.size()>;
@@ -35,10 +37,8 @@ struct MaterialSet {
   double max_speed = 0;   ///< m/s
   double wave_speed = 0;  ///< m/s
 
-  // Scratch of the step.
-  std::vector<std::vector<std::uint32_t>> movers_of_block = {};
-  std::vector<std::uint32_t> movers = {};  ///< particles that have changed cell and are not sorted in yet
-  std::vector<BlockRange> ranges = {};     ///< particles of each of the grid's particle blocks
+  /// Number of this material's block at each of the grid's particle blocks; -1 where it has no particles.
+  std::vector<std::int32_t> block_at = {};
 };
 
 /// Acceleration at world position x of the particle with this id at time t, m/s^2.
@@ -62,6 +62,11 @@ struct World {
   double t = 0;                   ///< s
   std::uint64_t steps = 0;
   double max_collider_speed = 0;  ///< at nodes inside colliders in the last step, m/s
+  double max_speed = 0;           ///< no particle is faster after the last step, m/s
+  /// Whether steps may run gather, update_stress and the next scatter block by block. The bits are the same.
+  bool fused = true;
+  /// The time step that the tiles hold the particles' contributions for, if they hold them.
+  std::optional<double> scattered_dt;
   VerbTimes verb_times = {};
 
   /// Adds a material without particles. @param model place in all_models()

@@ -1,17 +1,22 @@
 #include <firn/core/log.h>
+#include <firn/integrators/verbs.h>
 #include <firn/simulation/runaways.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace firn {
 
 template <class Real, int dim>
 void RunawayGuard<Real, dim>::park_fast(World<Real, dim>& world) {
-  if (!limits_.speed) return;
+  if (!may_park(world)) return;
+  double fastest = 0;
   for (auto& material : world.materials) {
-    if (!(material.max_speed > *limits_.speed)) continue;
+    if (!(material.max_speed > *limits_.speed)) {
+      fastest = std::max(fastest, material.max_speed);
+      continue;
+    }
     const auto& particles = material.particles;
     std::vector<std::uint32_t> places;
     double fastest_left = 0;
@@ -28,8 +33,10 @@ void RunawayGuard<Real, dim>::park_fast(World<Real, dim>& world) {
       }
     }
     material.max_speed = std::sqrt(fastest_left);
+    fastest = std::max(fastest, material.max_speed);
     remove(world, material, places, fmt::format("faster than limits.speed = {:g} m/s", *limits_.speed));
   }
+  world.max_speed = fastest;
 }
 
 template <class Real, int dim>
@@ -56,10 +63,8 @@ void RunawayGuard<Real, dim>::remove(World<Real, dim>& world, MaterialSet<Real, 
       "parked {} particle(s) of \"{}\" at t = {:.6g} s, {}: the first is id {} at x = {:.4g} m, y = {:.4g} m",
       places.size(), material.name, world.t, reason, material.particles.id()[places.front()], first[0], first[1]));
   parked_ += static_cast<std::int64_t>(places.size());
-  material.particles.store().remove(places);
-  // Places have shifted, so everything counts as moved; the order itself is unchanged.
-  material.movers.resize(material.particles.size());
-  std::iota(material.movers.begin(), material.movers.end(), 0u);
+  material.particles.remove(places);
+  activate_blocks(world);
 }
 
 template class RunawayGuard<float, 2>;

@@ -16,7 +16,10 @@ class RunawayGuard {
  public:
   explicit RunawayGuard(const LimitSettings& limits) : limits_(limits) {}
 
-  /// Cheap unless a material's largest speed is above the limit. Call after each step.
+  /// Whether the step that has just updated the grid may make particles faster than the limit; it must then end on a
+  /// drained state, and be followed by park_fast().
+  bool may_park(const World<Real, dim>& world) const { return limits_.speed && world.max_speed > *limits_.speed; }
+  /// Cheap unless a material's largest speed is above the limit. Call on drained states.
   void park_fast(World<Real, dim>& world);
   /// Looks at every particle. Call at the end of each frame.
   void park_far(World<Real, dim>& world);

@@ -1,9 +1,9 @@
 #include <firn/core/error.h>
 #include <firn/core/log.h>
 #include <firn/integrators/step.h>
+#include <firn/integrators/verbs.h>
 #include <firn/materials/model_info.h>
 #include <firn/measure/output_columns.h>
-#include <firn/measure/particle_state.h>
 #include <firn/simulation/runaways.h>
 #include <firn/simulation/simulation.h>
 #include <fmt/format.h>
@@ -12,6 +12,7 @@
 #include <tbb/task_arena.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -57,8 +58,14 @@ class SimulationOf final : public Simulation {
   VerbTimes verb_times() const override { return world_->verb_times; }
 
   TimeStep step() override {
+    const double until = frame_time(frame_ + 1);
     TimeStep taken;
-    const auto failure = try_step(frame_time(frame_ + 1), taken);
+    std::optional<ParticleFailure> failure;
+    arena_.execute([&] {
+      taken = choose_time_step(*world_, limits_, until - world_->t);
+      failure = step_explicit(*world_, taken.dt).failure;
+      if (!failure) guard_.park_fast(*world_);
+    });
     if (failure) fail(*failure, taken.dt);
     return taken;
   }
@@ -122,7 +129,7 @@ class SimulationOf final : public Simulation {
     const std::uint64_t clock[2] = {world_->steps, static_cast<std::uint64_t>(frame_)};
     std::uint64_t hash = XXH64(clock, sizeof(clock), XXH64(&world_->t, sizeof(world_->t), 1));
     for (const auto& material : world_->materials) {
-      const std::uint64_t part = material.particles.store().hash();
+      const std::uint64_t part = material.particles.hash();
       hash = XXH64(&part, sizeof(part), hash);
     }
     return hash;
@@ -132,9 +139,8 @@ class SimulationOf final : public Simulation {
   /// What a frame can be taken back to.
   struct Kept {
     std::vector<Particles<Real, dim>> particles;
-    std::vector<std::vector<std::uint32_t>> movers;
     std::vector<std::pair<double, double>> speeds;
-    double t, max_collider_speed;
+    double t, max_speed, max_collider_speed;
     std::uint64_t steps;
     std::int64_t parked;
   };
@@ -144,10 +150,10 @@ class SimulationOf final : public Simulation {
     kept_.emplace();
     for (const auto& material : world_->materials) {
       kept_->particles.push_back(material.particles);
-      kept_->movers.push_back(material.movers);
       kept_->speeds.emplace_back(material.max_speed, material.wave_speed);
     }
     kept_->t = world_->t;
+    kept_->max_speed = world_->max_speed;
     kept_->max_collider_speed = world_->max_collider_speed;
     kept_->steps = world_->steps;
     kept_->parked = guard_.parked();
@@ -157,11 +163,13 @@ class SimulationOf final : public Simulation {
     for (std::size_t m = 0; m < world_->materials.size(); ++m) {
       auto& material = world_->materials[m];
       material.particles = kept_->particles[m];
-      material.movers = kept_->movers[m];
       std::tie(material.max_speed, material.wave_speed) = kept_->speeds[m];
     }
     world_->t = kept_->t;
+    world_->max_speed = kept_->max_speed;
     world_->max_collider_speed = kept_->max_collider_speed;
+    world_->scattered_dt.reset();
+    activate_blocks(*world_);
     world_->steps = kept_->steps;
     guard_.restore(kept_->parked);
   }
@@ -175,33 +183,10 @@ class SimulationOf final : public Simulation {
     limits_.max_dt /= 2;
   }
 
-  std::optional<ParticleFailure> try_step(double until, TimeStep& taken) {
-    StepReport report;
-    arena_.execute([&] {
-      taken = choose_time_step(*world_, limits_, until - world_->t);
-      report = step_explicit(*world_, taken.dt);
-      if (!report.failure) guard_.park_fast(*world_);
-    });
-    return report.failure;
-  }
-
   std::optional<ParticleFailure> try_frame() {
-    const double until = frame_time(frame_ + 1);
-    report_ = {};
-    report_.dt = std::numeric_limits<double>::infinity();
-    while (world_->t < until) {
-      TimeStep taken;
-      const auto failure = try_step(until, taken);
-      ++report_.steps;
-      // That the frame ends is a reason only where nothing else is.
-      if (failure || report_.limit == "frame" || report_.limit.empty() || (taken.dt < report_.dt && taken.limit != "frame")) {
-        report_.dt = taken.dt;
-        report_.limit = taken.describe(material_names_);
-      }
-      if (failure) return failure;
-      // The last step of a frame lands on its time: what is left is round-off.
-      if (until - world_->t < 1e-9 * taken.dt) world_->t = until;
-    }
+    std::optional<ParticleFailure> failure;
+    arena_.execute([&] { failure = try_steps(frame_time(frame_ + 1)); });
+    if (failure) return failure;
     guard_.park_far(*world_);
     ++frame_;
     report_.frame = frame_;
@@ -211,20 +196,58 @@ class SimulationOf final : public Simulation {
     return std::nullopt;
   }
 
+  std::optional<ParticleFailure> try_steps(double until) {
+    report_ = {};
+    report_.dt = std::numeric_limits<double>::infinity();
+    TimeStep next = choose_time_step(*world_, limits_, until - world_->t);
+    while (world_->t < until) {
+      const TimeStep taken = next;
+      bool drained = false;
+      const StepReport step = step_explicit(*world_, taken.dt, [&] {
+        // What is left behind the last step of a frame is round-off.
+        const double remaining = until - (world_->t + taken.dt);
+        drained = remaining < 1e-9 * taken.dt || guard_.may_park(*world_);
+        if (drained) return 0.0;
+        next = choose_time_step(*world_, limits_, remaining);
+        return next.dt;
+      });
+      note_step(taken, step.failure.has_value());
+      if (step.failure) return step.failure;
+      if (!drained) continue;
+      guard_.park_fast(*world_);
+      // The last step of a frame lands on its time.
+      if (until - world_->t < 1e-9 * taken.dt) {
+        world_->t = until;
+      } else {
+        next = choose_time_step(*world_, limits_, until - world_->t);
+      }
+    }
+    return std::nullopt;
+  }
+
+  void note_step(const TimeStep& taken, bool failed) {
+    ++report_.steps;
+    // That the frame ends is a reason only where nothing else is.
+    if (failed || report_.limit == "frame" || report_.limit.empty() ||
+        (taken.dt < report_.dt && taken.limit != "frame")) {
+      report_.dt = taken.dt;
+      report_.limit = taken.describe(material_names_);
+    }
+  }
+
   std::string describe(const ParticleFailure& failure, double dt) const {
     const auto& material = world_->materials[failure.material];
-    const auto& particles = material.particles;
-    const ParticleState<dim> state = particle_state(particles, failure.particle);
+    Mat<double, dim> F;
+    std::copy_n(failure.strain.begin(), dim * dim, F.e);
     Vec<double, dim> v;
-    for (int i = 0; i < dim; ++i) v[i] = particles.real(Field::velocity, i)[failure.particle];
-    const auto x = particles.position(failure.particle, world_->grid.dx(), world_->transfer.kernel);
+    std::copy_n(failure.velocity.begin(), dim, v.e);
     return fmt::format(
         "step {} at t = {:.6g} s with dt = {:.3g} s: particle {} of \"{}\" cannot go on, {}; x = ({:.4g}) m, speed "
         "{:.4g} m/s, "
         "F = ({:.4g}), J = {:.4g}. The likely cause is a time step too long for what happens there: lower "
         "limits.elastic_cfl or limits.max_dt, use a smaller cell size, or soften material.{}",
-        world_->steps, world_->t, dt, failure.id, material.name, failure.cause, fmt::join(x.e, x.e + dim, ", "),
-        norm(v), fmt::join(state.F.e, state.F.e + dim * dim, ", "), determinant(state.F), material.name);
+        world_->steps, world_->t, dt, failure.id, material.name, failure.cause, fmt::join(failure.position, ", "),
+        norm(v), fmt::join(failure.strain, ", "), determinant(F), material.name);
   }
 
   [[noreturn]] void fail(const ParticleFailure& failure, double dt) const {

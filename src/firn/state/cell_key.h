@@ -11,6 +11,8 @@ namespace firn {
 template <int dim>
 using Index = std::array<std::int64_t, dim>;
 
+inline constexpr int kBlockSide = 4;  ///< cells or nodes per axis of a block
+
 /// A cell as a point on the Morton curve: the bits of its (shifted) coordinates interleaved, so that the cells of one
 /// block of 4^dim are consecutive and neighbouring blocks lie close together in memory.
 ///
@@ -104,6 +106,25 @@ constexpr std::uint64_t block_of_cell(std::uint64_t cell) {
 template <int dim>
 constexpr Index<dim> block_origin(std::uint64_t block) {
   return cell_of_key<dim>(block << CellKey<dim>::kBlockBits);
+}
+
+/// Where a cell lies in its block, the last axis running fastest: 0 to 4^dim - 1.
+template <int dim>
+constexpr std::uint8_t cell_code(const Index<dim>& cell) {
+  int code = 0;
+  for (int d = 0; d < dim; ++d) code = code * kBlockSide + static_cast<int>(cell[d] & (kBlockSide - 1));
+  return static_cast<std::uint8_t>(code);
+}
+
+/// The code of a particle that is on its way to another block.
+inline constexpr std::uint8_t kNoCell = 0xff;
+
+/// The cell of a code in a block whose lowest cell is `origin`.
+template <int dim>
+constexpr Index<dim> cell_of_code(const Index<dim>& origin, std::uint8_t code) {
+  Index<dim> cell = origin;
+  for (int d = dim - 1, rest = code; d >= 0; --d, rest /= kBlockSide) cell[d] += rest % kBlockSide;
+  return cell;
 }
 
 }  // namespace firn

@@ -1,4 +1,3 @@
-#include <firn/core/error.h>
 #include <firn/state/grid.h>
 
 #include <algorithm>
@@ -27,35 +26,98 @@ std::int32_t find(const std::vector<std::uint64_t>& blocks, std::uint64_t block)
 }  // namespace
 
 template <class Real, int dim>
-void Grid<Real, dim>::activate(std::vector<std::uint64_t> particle_blocks) {
-  if (particle_blocks == particle_blocks_ && tile_size_ != 0) return;
-  particle_blocks_ = std::move(particle_blocks);
-
-  node_blocks_.clear();
-  for (const std::uint64_t block : particle_blocks_) {
-    for (int o = 0; o < kReach<dim>; ++o) node_blocks_.push_back(neighbour<dim>(block, o, 1, period_));
+auto Grid<Real, dim>::new_tile() -> Tile {
+  Tile tile;
+  if (!spare_tiles_.empty()) {
+    tile = std::move(spare_tiles_.back());
+    spare_tiles_.pop_back();
   }
-  std::sort(node_blocks_.begin(), node_blocks_.end());
-  node_blocks_.erase(std::unique(node_blocks_.begin(), node_blocks_.end()), node_blocks_.end());
+  tile.resize(tile_size() * static_cast<std::size_t>(layers()));
+  std::fill(tile.begin(), tile.end(), Real(0));
+  return tile;
+}
 
-  upper_.resize(particle_blocks_.size());
-  lower_.assign(node_blocks_.size(), {});
-  for (auto& row : lower_) row.fill(-1);
+template <class Real, int dim>
+void Grid<Real, dim>::add_tiles(std::span<const std::uint64_t> blocks) {
+  std::vector<std::uint64_t> all;
+  std::vector<Tile> tiles;
+  auto old = added_blocks_.begin();
+  const auto take_old = [&] {
+    tiles.push_back(std::move(added_tiles_[static_cast<std::size_t>(old - added_blocks_.begin())]));
+    all.push_back(*old++);
+  };
+  for (const std::uint64_t block : blocks) {
+    while (old != added_blocks_.end() && *old < block) take_old();
+    if (old != added_blocks_.end() && *old == block) continue;
+    if (std::binary_search(particle_blocks_.begin(), particle_blocks_.end(), block)) continue;
+    all.push_back(block);
+    tiles.push_back(new_tile());
+  }
+  while (old != added_blocks_.end()) take_old();
+  added_blocks_ = std::move(all);
+  added_tiles_ = std::move(tiles);
+}
+
+template <class Real, int dim>
+Real* Grid<Real, dim>::tile_of(std::uint64_t block) {
+  if (const std::int32_t b = find(particle_blocks_, block); b >= 0) return tiles_[static_cast<std::size_t>(b)].data();
+  if (const std::int32_t b = find(added_blocks_, block); b >= 0)
+    return added_tiles_[static_cast<std::size_t>(b)].data();
+  return nullptr;
+}
+
+template <class Real, int dim>
+bool Grid<Real, dim>::activate(std::vector<std::uint64_t> particle_blocks) {
+  add_tiles(particle_blocks);
+  if (particle_blocks == particle_blocks_) return false;
+  std::vector<Tile> tiles(particle_blocks.size());
+  const auto take = [&](std::vector<std::uint64_t>& from, std::vector<Tile>& old) {
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const std::int32_t b = find(particle_blocks, from[i]);
+      (b >= 0 ? tiles[static_cast<std::size_t>(b)] : spare_tiles_.emplace_back()) = std::move(old[i]);
+    }
+    from.clear();
+    old.clear();
+  };
+  take(particle_blocks_, tiles_);
+  take(added_blocks_, added_tiles_);
+  tiles_ = std::move(tiles);
+  particle_blocks_ = std::move(particle_blocks);
+  link_blocks();
+  return true;
+}
+
+template <class Real, int dim>
+void Grid<Real, dim>::link_blocks() {
+  // Each block's neighbours with the place in `upper_` where their number goes: sorted by key, equal keys are one node
+  // block.
+  struct Link {
+    std::uint64_t key;
+    std::uint32_t block, offset;
+  };
+  std::vector<Link> links;
+  links.reserve(particle_blocks_.size() * kReach<dim>);
   for (std::size_t b = 0; b < particle_blocks_.size(); ++b) {
     for (int o = 0; o < kReach<dim>; ++o) {
-      const std::int32_t g = find(node_blocks_, neighbour<dim>(particle_blocks_[b], o, 1, period_));
-      upper_[b][static_cast<std::size_t>(o)] = g;
-      lower_[static_cast<std::size_t>(g)][static_cast<std::size_t>(o)] = static_cast<std::int32_t>(b);
+      links.push_back({neighbour<dim>(particle_blocks_[b], o, 1, period_), static_cast<std::uint32_t>(b),
+                       static_cast<std::uint32_t>(o)});
     }
   }
+  std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.key < b.key; });
 
-  tile_size_ = static_cast<std::size_t>(tile_nodes<dim>(kernel_) * kNodeWidth);
-  tiles_[0].resize(particle_blocks_.size() * tile_size_);
-  nodes_.resize(node_blocks_.size() * static_cast<std::size_t>(kBlockNodes<dim> * kNodeWidth));
-  if (keeps_velocity_change_) {
-    tiles_[1].resize(tiles_[0].size());
-    velocity_change_.resize(nodes_.size());
+  upper_.resize(particle_blocks_.size());
+  lower_.clear();
+  node_blocks_.clear();
+  for (const Link& link : links) {
+    if (node_blocks_.empty() || node_blocks_.back() != link.key) {
+      node_blocks_.push_back(link.key);
+      lower_.emplace_back().fill(-1);
+    }
+    upper_[link.block][link.offset] = static_cast<std::int32_t>(node_blocks_.size() - 1);
+    lower_.back()[link.offset] = static_cast<std::int32_t>(link.block);
   }
+  nodes_.resize(node_blocks_.size() * static_cast<std::size_t>(kBlockNodes<dim> * kNodeWidth));
+  if (keeps_velocity_change_) velocity_change_.resize(nodes_.size());
 }
 
 template class Grid<float, 2>;

@@ -12,8 +12,6 @@
 
 namespace firn {
 
-inline constexpr int kBlockSide = 4;  ///< nodes per axis of a grid block
-
 constexpr int power(int base, int exponent) { return exponent == 0 ? 1 : base * power(base, exponent - 1); }
 
 /// Nodes of a block; the last axis runs fastest.
@@ -27,9 +25,13 @@ inline constexpr int kReach = 1 << dim;
 /// Nodes per axis of the tile that the particles of one block touch.
 constexpr int tile_side(Kernel kernel) { return kBlockSide + support(kernel) - 1; }
 
+/// Nodes from one row of a tile to the next. Even, so that nodes can be handled in pairs that never overlap by half: a
+/// load that covers two earlier stores waits until both have reached the cache.
+constexpr int tile_row(Kernel kernel) { return (tile_side(kernel) + 1) / 2 * 2; }
+
 template <int dim>
 constexpr int tile_nodes(Kernel kernel) {
-  return power(tile_side(kernel), dim);
+  return power(tile_side(kernel), dim - 1) * tile_row(kernel);
 }
 
 /// Every node value is four numbers: in 3D (x, y, z, mass), in 2D (x, y, 0, mass). What xyz means changes during the
@@ -50,9 +52,13 @@ class Grid {
   Kernel kernel() const { return kernel_; }
   const Period<dim>& period() const { return period_; }
 
-  /// Creates the blocks for particles in the given blocks (ascending, unique); keeps everything if they are the same as
-  /// before.
-  void activate(std::vector<std::uint64_t> particle_blocks);
+  /// Creates the blocks for particles in the given blocks (ascending, unique). Tiles of blocks that stay keep their
+  /// contents, as do those that add_tiles() has made for the new ones. True if anything has changed.
+  bool activate(std::vector<std::uint64_t> particle_blocks);
+
+  /// Makes zeroed tiles for blocks (ascending) that have none and that the next activate() will hold: particles are
+  /// scattered to them while the nodes of the present blocks are still being read.
+  void add_tiles(std::span<const std::uint64_t> blocks);
 
   std::span<const std::uint64_t> particle_blocks() const { return particle_blocks_; }
   std::span<const std::uint64_t> node_blocks() const { return node_blocks_; }
@@ -62,10 +68,16 @@ class Grid {
   /// Particle block whose offset o is node block g; -1 if none.
   std::int32_t particle_block_of(std::size_t g, int o) const { return lower_[g][static_cast<std::size_t>(o)]; }
 
+  /// Numbers in one layer of a tile.
+  std::size_t tile_size() const { return static_cast<std::size_t>(tile_nodes<dim>(kernel_) * kNodeWidth); }
   /// Tile of particle block b: tile_nodes x kNodeWidth numbers. Layer 0 holds the momentum with the impulse of the
   /// step's forces; layer 1, kept for FLIP only, the momentum before it.
-  Real* tile(std::size_t b, int layer = 0) { return tiles_[layer].data() + b * tile_size_; }
-  const Real* tile(std::size_t b, int layer = 0) const { return tiles_[layer].data() + b * tile_size_; }
+  Real* tile(std::size_t b, int layer = 0) { return tiles_[b].data() + static_cast<std::size_t>(layer) * tile_size(); }
+  const Real* tile(std::size_t b, int layer = 0) const {
+    return tiles_[b].data() + static_cast<std::size_t>(layer) * tile_size();
+  }
+  /// Layer 0 of the tile of the block with this key, active or added; null if it has none. Layer 1 follows.
+  Real* tile_of(std::uint64_t block);
 
   /// Nodes of node block g: kBlockNodes x kNodeWidth numbers.
   Real* nodes(std::size_t g) { return nodes_.data() + g * kBlockNodes<dim> * kNodeWidth; }
@@ -78,16 +90,22 @@ class Grid {
   }
   bool has_velocity_change() const { return keeps_velocity_change_; }
   void keep_velocity_change(bool keep) { keeps_velocity_change_ = keep; }
+  int layers() const { return keeps_velocity_change_ ? 2 : 1; }
 
  private:
+  using Tile = AlignedVector<Real>;
+
+  Tile new_tile();
+  void link_blocks();
+
   double dx_;
   Kernel kernel_;
   Period<dim> period_;
   bool keeps_velocity_change_ = false;
-  std::size_t tile_size_ = 0;
-  std::vector<std::uint64_t> particle_blocks_, node_blocks_;
+  std::vector<std::uint64_t> particle_blocks_, node_blocks_, added_blocks_;
+  std::vector<Tile> tiles_, added_tiles_, spare_tiles_;
   std::vector<std::array<std::int32_t, kReach<dim>>> upper_, lower_;
-  AlignedVector<Real> tiles_[2], nodes_, velocity_change_;
+  AlignedVector<Real> nodes_, velocity_change_;
 };
 
 }  // namespace firn

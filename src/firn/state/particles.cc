@@ -2,117 +2,41 @@
 #include <firn/core/parallel.h>
 #include <firn/state/particles.h>
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 
 namespace firn {
 namespace {
 
-enum class Element { real, key, number };
-enum class Shape { scalar, vector, matrix, stress };
-
-struct FieldSpec {
-  const char *name, *unit, *help;
-  Element element;
-  Shape shape;
-};
-
-/// In the order of Field.
-constexpr std::array<FieldSpec, kFieldCount> kFields = {{
-    {"cell", "", "Morton key of the particle's cell.", Element::key, Shape::scalar},
-    {"offset", "", "Position inside the cell, in cells.", Element::real, Shape::vector},
-    {"velocity", "m/s", "Velocity.", Element::real, Shape::vector},
-    {"affine", "1/s", "Affine velocity matrix C of APIC.", Element::real, Shape::matrix},
-    {"strain", "", "Deformation gradient; its elastic part for plastic models.", Element::real, Shape::matrix},
-    {"stress", "Pa", "Kirchhoff stress.", Element::real, Shape::stress},
-    {"mass", "kg", "Mass; per metre of thickness in 2D.", Element::real, Shape::scalar},
-    {"rest_volume", "m^3", "Undeformed volume; per metre of thickness in 2D.", Element::real, Shape::scalar},
-    {"id", "", "Number of the particle, stable over the whole run.", Element::number, Shape::scalar},
-    {"body", "", "Index of the body that the particle was seeded in.", Element::number, Shape::scalar},
-    {"grad_v", "1/s", "Velocity gradient.", Element::real, Shape::matrix},
-    {"acceleration", "m/s^2", "Acceleration by the body force.", Element::real, Shape::vector},
-}};
-
-template <int dim>
-constexpr int component_count(Shape shape) {
-  switch (shape) {
-    case Shape::scalar:
-      return 1;
-    case Shape::vector:
-      return dim;
-    case Shape::matrix:
-      return dim * dim;
-    case Shape::stress:
-      return dim == 3 ? 6 : 4;
-  }
-  return 0;
-}
-
-constexpr std::size_t kGrain = 1 << 14;
-
-struct Mover {
-  std::uint64_t key;
-  std::uint32_t id, particle;
-  // By id, not by previous place: which of two particles from different blocks came first along the curve depends on
-  // where the scene lies.
-  bool operator<(const Mover& other) const { return key != other.key ? key < other.key : id < other.id; }
-};
-
-/// The order that merges the particles which stayed (already sorted) with the movers, by (key, id). Chunks of stayers
-/// are independent: where a chunk's output begins follows from counting movers before it.
-void merge_order(const std::uint64_t* keys, const std::uint32_t* ids, std::size_t count,
-                 std::span<const std::uint32_t> movers, const std::vector<Mover>& sorted_movers,
-                 std::vector<std::uint32_t>& order) {
-  order.resize(count);
-  const auto first_stayer = [&](std::size_t from) {
-    auto mover = std::lower_bound(movers.begin(), movers.end(), from);
-    std::size_t p = from;
-    while (mover != movers.end() && *mover == p) ++mover, ++p;
-    return p;
-  };
-  const auto mover_position = [&](std::size_t p) {  // movers that go before stayer p
-    if (p >= count) return sorted_movers.size();
-    const Mover stayer = {keys[p], ids[p], static_cast<std::uint32_t>(p)};
-    return static_cast<std::size_t>(std::lower_bound(sorted_movers.begin(), sorted_movers.end(), stayer) -
-                                    sorted_movers.begin());
-  };
-  parallel_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
-    auto skip = std::lower_bound(movers.begin(), movers.end(), begin);
-    const std::size_t stayers_before = begin - static_cast<std::size_t>(skip - movers.begin());
-    std::size_t m = begin == 0 ? 0 : mover_position(first_stayer(begin));
-    const std::size_t m_end = mover_position(first_stayer(end));
-    std::size_t out = stayers_before + m;
-    for (std::size_t p = begin; p < end; ++p) {
-      if (skip != movers.end() && *skip == p) {
-        ++skip;
-        continue;
-      }
-      const Mover stayer = {keys[p], ids[p], static_cast<std::uint32_t>(p)};
-      while (m < sorted_movers.size() && sorted_movers[m] < stayer) order[out++] = sorted_movers[m++].particle;
-      order[out++] = static_cast<std::uint32_t>(p);
-    }
-    while (m < m_end) order[out++] = sorted_movers[m++].particle;
-  });
-}
+constexpr std::size_t kIndexStep = 256;
+/// New particles wait in parts of this size, so that their memory can be given back part by part while blocks fill.
+constexpr std::size_t kNewPart = 1 << 15;
 
 }  // namespace
 
 template <class Real, int dim>
-Particles<Real, dim>::Particles(const Options& options) : history_(options.history) {
-  for (int f = 0; f < kFieldCount; ++f) {
-    const FieldSpec& field = kFields[static_cast<std::size_t>(f)];
-    const bool wanted = static_cast<Field>(f) == Field::grad_v         ? options.separate_grad_v
-                        : static_cast<Field>(f) == Field::acceleration ? options.acceleration
-                                                                       : true;
-    const int bytes = field.element == Element::real  ? static_cast<int>(sizeof(Real))
-                      : field.element == Element::key ? 8
-                                                      : 4;
-    columns_[static_cast<std::size_t>(f)] =
-        wanted ? store_.add({field.name, field.unit, field.help, component_count<dim>(field.shape), bytes}) : -1;
-  }
-  first_history_ = store_.column_count();
-  for (const HistorySpec& h : history_) store_.add({h.name, h.unit, h.help, 1, static_cast<int>(sizeof(Real))});
+Particles<Real, dim>::Particles(const Options& options)
+    : layout_(ParticleLayout::of(dim, static_cast<int>(sizeof(Real)),
+                                 {options.keeps_velocity, options.separate_grad_v, options.acceleration,
+                                  static_cast<int>(options.history.size())})),
+      history_(options.history),
+      first_(1, 0) {}
+
+template <class Real, int dim>
+Particles<Real, dim>::Particles(const Particles& other)
+    : layout_(other.layout_), history_(other.history_), first_(other.first_), block_near_(other.block_near_) {
+  for (const ParticleBlock& block : other.blocks_) blocks_.push_back(block.copy(layout_));
+  for (const ParticleBlock& part : other.new_) new_.push_back(part.copy(layout_));
+}
+
+template <class Real, int dim>
+Particles<Real, dim>& Particles<Real, dim>::operator=(const Particles& other) {
+  if (this != &other) *this = Particles(other);
+  return *this;
 }
 
 template <class Real, int dim>
@@ -132,34 +56,58 @@ CellPosition<Real, dim> cell_position(const Vec<double, dim>& x, double dx, Kern
 }
 
 template <class Real, int dim>
-void Particles<Real, dim>::append(std::span<const Vec<double, dim>> positions, double dx, Kernel kernel,
-                                  const Period<dim>& period, double mass, double rest_volume, std::uint32_t first_id,
-                                  std::uint32_t body_index) {
-  const std::size_t first = size();
-  store_.resize(first + positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const std::size_t p = first + i;
-    const auto place = cell_position<Real, dim>(positions[i], dx, kernel, period);
-    if (!fits_key<dim>(place.cell)) {
-      throw Error(
-          ErrorKind::usage,
-          fmt::format("particle {} lies more than {} cells from the origin; move the scene closer or use larger cells",
-                      first_id + i, CellKey<dim>::kCellLimit));
-    }
-    cell()[p] = cell_key<dim>(place.cell);
-    for (int d = 0; d < dim; ++d) real(Field::offset, d)[p] = place.offset[d];
-    for (int d = 0; d < dim; ++d) real(Field::strain, d * dim + d)[p] = Real(1);
-    real(Field::mass)[p] = static_cast<Real>(mass);
-    real(Field::rest_volume)[p] = static_cast<Real>(rest_volume);
-    id()[p] = first_id + static_cast<std::uint32_t>(i);
-    body()[p] = body_index;
-    for (int h = 0; h < history_count(); ++h) history(h)[p] = static_cast<Real>(history_spec(h).initial_value);
+auto Particles<Real, dim>::find(std::size_t p) const -> Place {
+  std::size_t b = block_near_[p / kIndexStep];
+  while (first_[b + 1] <= p) ++b;
+  return {b < blocks_.size() ? &blocks_[b] : &new_[b - blocks_.size()], p - first_[b]};
+}
+
+template <class Real, int dim>
+void Particles<Real, dim>::index_blocks() {
+  const std::size_t parts = blocks_.size() + new_.size();
+  first_.resize(parts + 1);
+  first_[0] = 0;
+  for (std::size_t b = 0; b < parts; ++b) {
+    first_[b + 1] = first_[b] + (b < blocks_.size() ? blocks_[b] : new_[b - blocks_.size()]).count;
+  }
+  block_near_.resize((first_[parts] + kIndexStep - 1) / kIndexStep);
+  std::size_t next = 0;
+  for (std::size_t b = 0; b < parts; ++b) {
+    for (; next * kIndexStep < first_[b + 1]; ++next) block_near_[next] = static_cast<std::uint32_t>(b);
+  }
+}
+
+template <class Real, int dim>
+std::uint64_t Particles<Real, dim>::cell(std::size_t p) const {
+  const auto [block, i] = find(p);
+  if (!block->cells.empty()) return block->cells[i];
+  const std::uint8_t code = *block->storage().template at<std::uint8_t>(place_of(Field::cell), i);
+  if (code != kNoCell) return cell_key<dim>(cell_of_code<dim>(block_origin<dim>(block->key), code));
+  const auto leaver = std::lower_bound(block->leavers.begin(), block->leavers.end(), i,
+                                       [](const Leaver& l, std::size_t place) { return l.place < place; });
+  return leaver->cell;
+}
+
+template <class Real, int dim>
+void Particles<Real, dim>::set_cell(std::size_t p, std::uint64_t cell) {
+  const auto [found, i] = find(p);
+  auto& block = const_cast<ParticleBlock&>(*found);
+  if (!block.cells.empty()) {
+    block.cells[i] = cell;
+    return;
+  }
+  std::uint8_t& code = *block.storage().template at<std::uint8_t>(place_of(Field::cell), i);
+  if (block_of_cell<dim>(cell) == block.key) {
+    code = cell_code<dim>(cell_of_key<dim>(cell));
+  } else {
+    code = kNoCell;
+    block.leavers.push_back({static_cast<std::uint32_t>(i), cell});
   }
 }
 
 template <class Real, int dim>
 Vec<double, dim> Particles<Real, dim>::position(std::size_t p, double dx, Kernel kernel) const {
-  const Index<dim> at = cell_of_key<dim>(cell()[p]);
+  const Index<dim> at = cell_of_key<dim>(cell(p));
   Vec<double, dim> x;
   for (int d = 0; d < dim; ++d) {
     x[d] = dx * (static_cast<double>(at[static_cast<std::size_t>(d)]) + cell_offset(kernel) +
@@ -169,31 +117,189 @@ Vec<double, dim> Particles<Real, dim>::position(std::size_t p, double dx, Kernel
 }
 
 template <class Real, int dim>
-void Particles<Real, dim>::sort_by_cell(std::span<const std::uint32_t> movers) {
-  if (size() == 0) blocks_.clear();  // all of them may have been removed
-  if (movers.empty()) return;
-  std::vector<Mover> sorted(movers.size());
-  for (std::size_t m = 0; m < movers.size(); ++m) sorted[m] = {cell()[movers[m]], id()[movers[m]], movers[m]};
-  // A total order, so the parallel sort has one result.
-  tbb::parallel_sort(sorted.begin(), sorted.end());
-  merge_order(cell(), id(), size(), movers, sorted, order_);
-  store_.reorder(order_);
-  find_blocks();
+void Particles<Real, dim>::append(std::span<const Vec<double, dim>> positions, double dx, Kernel kernel,
+                                  const Period<dim>& period, double mass, double rest_volume, std::uint32_t first_id,
+                                  std::uint32_t body_index) {
+  if (body_index > std::numeric_limits<std::uint16_t>::max()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("body number {} is too large: a scene may have 65536 bodies", body_index));
+  }
+  for (std::size_t n = 0; n < positions.size(); ++n) {
+    const auto place = cell_position<Real, dim>(positions[n], dx, kernel, period);
+    if (!fits_key<dim>(place.cell)) {
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("particle {} lies more than {} cells from the origin; move the scene closer or use larger cells",
+                      first_id + n, CellKey<dim>::kCellLimit));
+    }
+    if (new_.empty() || new_.back().count == kNewPart) {
+      new_.emplace_back();
+      new_.back().reserve(layout_, std::min(kNewPart, positions.size() - n));
+    }
+    ParticleBlock& part = new_.back();
+    if (part.count == part.storage().capacity) {
+      part.reserve(layout_, std::min<std::size_t>(kNewPart, 2 * part.count + positions.size() - n));
+    }
+    const std::uint32_t i = part.count++;
+    part.cells.push_back(cell_key<dim>(place.cell));
+    const ParticleColumns<Real, dim> columns = columns_of<Real, dim>(layout_, part.storage(), i, part.storage(), i);
+    for (int d = 0; d < dim; ++d) {
+      *columns.offset[d] = place.offset[d];
+      *columns.strain[d * dim + d] = Real(1);
+    }
+    *columns.mass = static_cast<Real>(mass);
+    *columns.rest_volume = static_cast<Real>(rest_volume);
+    *columns.id = first_id + static_cast<std::uint32_t>(n);
+    *columns.body = static_cast<std::uint16_t>(body_index);
+    for (int h = 0; h < history_count(); ++h) *columns.history[h] = static_cast<Real>(history_spec(h).initial_value);
+  }
+  index_blocks();
 }
 
 template <class Real, int dim>
-void Particles<Real, dim>::find_blocks() {
-  blocks_.clear();
-  const std::uint64_t* keys = cell();
-  for (std::size_t p = 0; p < size();) {
-    const std::uint64_t block = block_of_cell<dim>(keys[p]);
-    // Gallop to the end of the block: most hold hundreds of particles.
-    std::size_t step = 64, end = p + 1;
-    while (end + step < size() && block_of_cell<dim>(keys[end + step]) == block) end += step;
-    while (end < size() && block_of_cell<dim>(keys[end]) == block) ++end;
-    blocks_.push_back({block, static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(end)});
-    p = end;
+void Particles<Real, dim>::remove(std::span<const std::uint32_t> places) {
+  std::vector<ParticleBlock*> touched;
+  for (const std::uint32_t p : places) {
+    const auto [found, i] = find(p);
+    auto& block = const_cast<ParticleBlock&>(*found);
+    if (touched.empty() || touched.back() != &block) touched.push_back(&block);
+    block.leavers.push_back({static_cast<std::uint32_t>(i), 0});
   }
+  for (ParticleBlock* block : touched) block->close_gaps(layout_, layout_.reals);
+  settle();
+}
+
+template <class Real, int dim>
+void Particles<Real, dim>::create_blocks(const std::vector<std::uint64_t>& keys) {
+  std::vector<ParticleBlock> all;
+  all.reserve(blocks_.size() + keys.size());
+  auto old = blocks_.begin();
+  for (const std::uint64_t key : keys) {
+    while (old != blocks_.end() && old->key < key) all.push_back(std::move(*old++));
+    if (old != blocks_.end() && old->key == key) continue;
+    all.emplace_back();
+    all.back().key = key;
+  }
+  std::move(old, blocks_.end(), std::back_inserter(all));
+  blocks_ = std::move(all);
+}
+
+template <class Real, int dim>
+auto Particles<Real, dim>::route() -> std::span<const Arrivals> {
+  const std::size_t width = record_bytes(layout_);
+  departures_.clear();
+  for (const ParticleBlock& block : blocks_) {
+    for (std::size_t n = 0; n < block.leavers.size(); ++n) {
+      const std::byte* record = block.outbox.data() + n * width;
+      const ParticleStorage storage = {const_cast<std::byte*>(record), 1};
+      departures_.push_back({block.leavers[n].cell, *storage.at<std::uint32_t>(place_of(Field::id)), record});
+    }
+  }
+  // A total order, so the parallel sort has one result.
+  tbb::parallel_sort(departures_.begin(), departures_.end());
+
+  arrivals_.clear();
+  std::vector<std::uint64_t> keys;
+  for (std::size_t n = 0; n < departures_.size(); ++n) {
+    const std::uint64_t key = block_of_cell<dim>(departures_[n].cell);
+    if (keys.empty() || keys.back() != key) {
+      keys.push_back(key);
+      arrivals_.push_back({0, n, n});
+    }
+    ++arrivals_.back().end;
+  }
+  create_blocks(keys);
+  std::size_t b = 0;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    while (blocks_[b].key != keys[k]) ++b;
+    arrivals_[k].block = b;
+  }
+  return arrivals_;
+}
+
+template <class Real, int dim>
+void Particles<Real, dim>::receive(const Arrivals& arrivals, ParticleStorage passing) {
+  ParticleBlock& block = blocks_[arrivals.block];
+  const bool in_block = passing.memory == block.storage().memory;
+  for (std::size_t n = arrivals.begin; n < arrivals.end; ++n) {
+    const Departure& departure = departures_[n];
+    const ParticleStorage record = {const_cast<std::byte*>(departure.record), 1};
+    const std::size_t place = block.count++;
+    copy_reals(layout_, 0, layout_.kept_reals, record, 0, block.storage(), place);
+    copy_reals(layout_, layout_.kept_reals, layout_.reals, record, 0, passing, in_block ? place : n - arrivals.begin);
+    copy_numbers(layout_, record, 0, block.storage(), place);
+    *block.storage().template at<std::uint8_t>(place_of(Field::cell), place) =
+        cell_code<dim>(cell_of_key<dim>(departure.cell));
+  }
+}
+
+template <class Real, int dim>
+void Particles<Real, dim>::settle() {
+  for (ParticleBlock& block : blocks_) {
+    block.leavers.clear();
+    block.outbox.clear();
+    block.shrink(layout_);
+  }
+  std::erase_if(blocks_, [](const ParticleBlock& block) { return block.count == 0; });
+  index_blocks();
+}
+
+template <class Real, int dim>
+void Particles<Real, dim>::place_new_particles() {
+  // Part by part, so that there is never room for two copies of all particles.
+  std::vector<ParticleBlock> parts = std::move(new_);
+  new_.clear();
+  for (ParticleBlock& part : parts) {
+    // The part poses as a block that all of its particles leave.
+    for (std::uint32_t i = 0; i < part.count; ++i) part.leavers.push_back({i, part.cells[i]});
+    part.send(layout_, 0, part.storage(), 0);
+    part.key = std::numeric_limits<std::uint64_t>::max();
+    part.count = 0;
+    blocks_.push_back(std::move(part));
+    for (const Arrivals& arrivals : route()) {
+      make_room(arrivals);
+      receive(arrivals, blocks_[arrivals.block].storage());
+    }
+    blocks_.pop_back();
+  }
+  parallel_each(blocks_.size(), [&](std::size_t b) { blocks_[b].order_by_cell(layout_); });
+}
+
+template <class Real, int dim>
+void Particles<Real, dim>::sort_by_block() {
+  parallel_each(blocks_.size(), [&](std::size_t b) {
+    if (blocks_[b].leavers.empty()) return;
+    blocks_[b].send(layout_, 0, blocks_[b].storage(), 0);
+    blocks_[b].close_gaps(layout_, layout_.reals);
+  });
+  const std::span<const Arrivals> arrivals = route();
+  parallel_each(arrivals.size(), [&](std::size_t k) {
+    make_room(arrivals[k]);
+    receive(arrivals[k], blocks_[arrivals[k].block].storage());
+  });
+  settle();
+  if (new_.empty()) return;
+  place_new_particles();
+  settle();
+}
+
+template <class Real, int dim>
+std::uint64_t Particles<Real, dim>::hash() const {
+  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), &XXH3_freeState);
+  XXH3_64bits_reset(state.get());
+  const auto add = [&](const ParticleBlock& block) {
+    XXH3_64bits_update(state.get(), &block.key, sizeof(block.key));
+    XXH3_64bits_update(state.get(), &block.count, sizeof(block.count));
+    // The acceleration comes last; it belongs to a scatter, not to the state.
+    const int reals = layout_.reals - component_count(Field::acceleration);
+    for_each_component(layout_, reals, [&](int place, int width) {
+      XXH3_64bits_update(state.get(), block.storage().template at<std::byte>(place),
+                         block.count * static_cast<std::size_t>(width));
+    });
+  };
+  for (const ParticleBlock& block : blocks_) add(block);
+  for (const ParticleBlock& part : new_) add(part);
+  return XXH3_64bits_digest(state.get());
 }
 
 #define FIRN_INSTANTIATE(Real, dim)                                                                  \

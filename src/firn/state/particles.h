@@ -2,8 +2,8 @@
 
 #include <firn/core/linear_algebra.h>
 #include <firn/state/cell_key.h>
-#include <firn/state/column_store.h>
 #include <firn/state/kernel.h>
+#include <firn/state/particle_block.h>
 
 #include <array>
 #include <cstdint>
@@ -13,100 +13,167 @@
 
 namespace firn {
 
-/// The column that a particle quantity lives in.
-enum class Field : int {
-  cell,         ///< Morton key of the particle's cell
-  offset,       ///< position inside the cell, in cells: x = dx (cell + kernel offset + offset), offset in [0, 1]
-  velocity,     ///< v_p, m/s
-  affine,       ///< C_p, 1/s, row-major: row is the velocity's component
-  strain,       ///< F_p (elastic part, for plastic models), row-major
-  stress,       ///< Kirchhoff, Pa
-  mass,         ///< m_p, kg (kg/m in 2D)
-  rest_volume,  ///< V_p^0, m^3 (m^2 in 2D)
-  id,           ///< stable over the whole run
-  body,         ///< index into the scene's bodies
-  grad_v,       ///< sum v_i grad w_ip^T, 1/s; only where it differs from C_p (the gradient form with quadratic or cubic
-                ///< kernels)
-  acceleration,  ///< of the body_force callback, m/s^2; only with one
-};
-inline constexpr int kFieldCount = 12;
-
-/// Consecutive particles whose cells lie in one block.
-struct BlockRange {
-  std::uint64_t block;       ///< block key
-  std::uint32_t begin, end;  ///< particles
-};
-
 /// Which axes are periodic, and their length in cells (a whole number of blocks); 0 for an axis that is not.
 template <int dim>
 using Period = std::array<std::int64_t, dim>;
 
-struct HistorySpec {
-  std::string name, unit, help;
-  double initial_value = 0;
-};
-
-/// All particles of one material, lying by block along the Morton curve, then by cell, then by id: an order
-/// that follows from the particles' states alone, and not from where the curve passes or how they got there.
+/// All particles of one material, in blocks of 4^dim cells along the Morton curve. Inside a block they lie in the order
+/// in which they came, those that came in one step by cell and id: an order that follows from the particles' motion
+/// alone, and not from threads or from where the curve passes. Only particles that change block are moved.
 ///
 /// Positions keep their precision at any distance from the origin, because only the place inside the cell is a Real.
 template <class Real, int dim>
 class Particles {
  public:
   struct Options {
+    bool keeps_velocity = false;  ///< see ParticleLayout
     bool separate_grad_v = false;
     bool acceleration = false;
     std::vector<HistorySpec> history = {};
   };
 
+  /// One field's component over all particles, block after block: column[p]. For output, measuring and tests; a step's
+  /// loops use columns().
+  template <class T>
+  class Column {
+   public:
+    Column(const Particles& particles, int place) : particles_(particles), place_(place) {}
+    T& operator[](std::size_t p) const {
+      const auto [block, i] = particles_.find(p);
+      return *block->storage().template at<T>(place_, i);
+    }
+
+   private:
+    const Particles& particles_;
+    int place_;
+  };
+
+  /// Particles that arrive in block `block`: records [begin, end) of what route() has sorted.
+  struct Arrivals {
+    std::size_t block, begin, end;
+  };
+
   explicit Particles(const Options& options);
+  Particles(const Particles& other);
+  Particles(Particles&&) noexcept = default;
+  Particles& operator=(const Particles& other);
+  Particles& operator=(Particles&&) noexcept = default;
 
-  std::size_t size() const { return store_.size(); }
-  ColumnStore& store() { return store_; }
-  const ColumnStore& store() const { return store_; }
+  std::size_t size() const { return first_.back(); }
+  const ParticleLayout& layout() const { return layout_; }
+  bool has(Field field) const { return layout_.field[static_cast<std::size_t>(field)] >= 0; }
+  int component_count(Field field) const { return layout_.components[static_cast<std::size_t>(field)]; }
 
-  bool has(Field field) const { return columns_[static_cast<std::size_t>(field)] >= 0; }
-  Real* real(Field field, int c = 0) { return store_.component<Real>(column(field), c); }
-  const Real* real(Field field, int c = 0) const { return store_.component<Real>(column(field), c); }
-  std::uint64_t* cell() { return store_.component<std::uint64_t>(column(Field::cell)); }
-  const std::uint64_t* cell() const { return store_.component<std::uint64_t>(column(Field::cell)); }
-  std::uint32_t* id() { return store_.component<std::uint32_t>(column(Field::id)); }
-  const std::uint32_t* id() const { return store_.component<std::uint32_t>(column(Field::id)); }
-  std::uint32_t* body() { return store_.component<std::uint32_t>(column(Field::body)); }
-  const std::uint32_t* body() const { return store_.component<std::uint32_t>(column(Field::body)); }
-
+  Column<Real> real(Field field, int c = 0) { return {*this, place_of(field, c)}; }
+  Column<const Real> real(Field field, int c = 0) const { return {*this, place_of(field, c)}; }
+  Column<std::uint32_t> id() { return {*this, place_of(Field::id)}; }
+  Column<const std::uint32_t> id() const { return {*this, place_of(Field::id)}; }
+  Column<std::uint16_t> body() { return {*this, place_of(Field::body)}; }
+  Column<const std::uint16_t> body() const { return {*this, place_of(Field::body)}; }
   int history_count() const { return static_cast<int>(history_.size()); }
   const HistorySpec& history_spec(int h) const { return history_[static_cast<std::size_t>(h)]; }
-  Real* history(int h) { return store_.component<Real>(first_history_ + h); }
-  const Real* history(int h) const { return store_.component<Real>(first_history_ + h); }
+  Column<Real> history(int h) { return {*this, layout_.history + h * layout_.real_bytes}; }
+  Column<const Real> history(int h) const { return {*this, layout_.history + h * layout_.real_bytes}; }
 
-  /// Adds particles at rest in their undeformed state (F = I, C = 0, history at its initial value).
-  /// @param positions world coordinates, m
-  /// Error(usage) if a position lies more than CellKey::kCellLimit cells from the origin.
-  void append(std::span<const Vec<double, dim>> positions, double dx, Kernel kernel, const Period<dim>& period,
-              double mass, double rest_volume, std::uint32_t first_id, std::uint32_t body);
-
+  /// Key of particle p's cell.
+  std::uint64_t cell(std::size_t p) const;
+  /// Moves particle p to another cell; call sort_by_block() afterwards. Ascending p.
+  void set_cell(std::size_t p, std::uint64_t cell);
   /// World position of particle p, m.
   Vec<double, dim> position(std::size_t p, double dx, Kernel kernel) const;
 
-  /// Restores the order after particles have changed cell.
-  /// @param movers the particles whose cell key has changed since the last call, ascending; new particles count as
-  /// movers
-  void sort_by_cell(std::span<const std::uint32_t> movers);
+  /// Adds particles at rest in their undeformed state (F = I, C = 0, history at its initial value), behind all others
+  /// and in the given order until the next sort_by_block().
+  /// @param positions world coordinates, m
+  /// Error(usage) if a position lies more than CellKey::kCellLimit cells from the origin, or the body has no room in
+  /// its column.
+  void append(std::span<const Vec<double, dim>> positions, double dx, Kernel kernel, const Period<dim>& period,
+              double mass, double rest_volume, std::uint32_t first_id, std::uint32_t body);
 
-  /// One entry per block that holds particles, in order. Valid after sort_by_cell.
-  std::span<const BlockRange> blocks() const { return blocks_; }
+  /// Removes the particles at these places, ascending; all must be sorted. The others keep their order.
+  void remove(std::span<const std::uint32_t> places);
+
+  /// Brings new particles and those that have left their block to their blocks.
+  void sort_by_block();
+
+  std::size_t block_count() const { return blocks_.size(); }
+  std::uint64_t block_key(std::size_t b) const { return blocks_[b].key; }
+  std::uint32_t block_size(std::size_t b) const { return blocks_[b].count; }
+  /// Number of the block's first particle.
+  std::size_t first_of_block(std::size_t b) const { return first_[b]; }
+  std::vector<Leaver>& leavers(std::size_t b) { return blocks_[b].leavers; }
+
+  /// The particles of block b as plain arrays.
+  ParticleColumns<Real, dim> columns(std::size_t b) {
+    return columns_of<Real, dim>(layout_, blocks_[b].storage(), 0, blocks_[b].storage(), 0);
+  }
+  /// The same from particle `first` on, with the fields that do not survive a fused step in `passing`.
+  ParticleColumns<Real, dim> columns(std::size_t b, std::size_t first, ParticleStorage passing) {
+    return columns_of<Real, dim>(layout_, blocks_[b].storage(), first, passing, 0);
+  }
+
+  /// Asks for kept fields to be brought into cache: of block b from particle `first` on, or if it has no more of them,
+  /// of the next block.
+  void prefetch_kept(std::size_t b, std::size_t first, std::size_t particles) const {
+    if (first < blocks_[b].count) {
+      blocks_[b].prefetch_kept(layout_, first, particles);
+    } else if (b + 1 < blocks_.size()) {
+      blocks_[b + 1].prefetch_kept(layout_, 0, particles);
+    }
+  }
+
+  // What sort_by_block() consists of, for a step that handles particles on their way. In this order:
+
+  /// Copies the leavers of block b from number `first_leaver` on to its outbox; `passing` as in columns().
+  void send(std::size_t b, std::size_t first_leaver, ParticleStorage passing, std::size_t passing_first) {
+    blocks_[b].send(layout_, first_leaver, passing, passing_first);
+  }
+  /// Closes the gaps in block b, only in the fields that survive a fused step.
+  void close_gaps_of_kept(std::size_t b) { blocks_[b].close_gaps(layout_, layout_.kept_reals); }
+  /// Sorts all outboxes by destination and creates blocks that are missing. Block numbers change.
+  std::span<const Arrivals> route();
+  /// Appends arrivals, several blocks at a time. Kept fields go to the block, the others to `passing` from its first
+  /// element on.
+  void receive(const Arrivals& arrivals, ParticleStorage passing);
+  void make_room(const Arrivals& arrivals) {
+    ParticleBlock& block = blocks_[arrivals.block];
+    block.reserve(layout_, block.count + (arrivals.end - arrivals.begin));
+  }
+  /// Empties the outboxes and removes empty blocks.
+  void settle();
+
+  /// Hash of all particles in order: equal for equal bits.
+  std::uint64_t hash() const;
 
  private:
-  int column(Field field) const { return columns_[static_cast<std::size_t>(field)]; }
-  void find_blocks();
+  struct Departure {
+    std::uint64_t cell;
+    std::uint32_t id;
+    const std::byte* record;
+    bool operator<(const Departure& other) const { return cell != other.cell ? cell < other.cell : id < other.id; }
+  };
 
-  ColumnStore store_;
-  std::array<int, kFieldCount> columns_;
-  int first_history_ = 0;
+  struct Place {
+    const ParticleBlock* block;
+    std::size_t i;
+  };
+  Place find(std::size_t p) const;
+  int place_of(Field field, int c = 0) const {
+    const int width = field == Field::body ? 2 : field == Field::id ? 4 : layout_.real_bytes;
+    return layout_.field[static_cast<std::size_t>(field)] + c * width;
+  }
+  void create_blocks(const std::vector<std::uint64_t>& keys);
+  void place_new_particles();
+  void index_blocks();
+
+  ParticleLayout layout_;
   std::vector<HistorySpec> history_;
-  std::vector<BlockRange> blocks_;
-  std::vector<std::uint32_t> order_;  // scratch of sort_by_cell
+  std::vector<ParticleBlock> blocks_;      ///< ascending by key
+  std::vector<ParticleBlock> new_;         ///< appended particles that have no block yet
+  std::vector<std::size_t> first_;         ///< number of the first particle of each block, then of each part of new_
+  std::vector<std::uint32_t> block_near_;  ///< block of every kIndexStep-th particle
+  std::vector<Departure> departures_;      ///< scratch of route
+  std::vector<Arrivals> arrivals_;
 };
 
 /// Cell and offset of world position x. Periodic axes are wrapped.

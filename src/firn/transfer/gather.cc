@@ -4,7 +4,8 @@
 // After foreach_target.h.
 #include <firn/core/linear_algebra-inl.h>
 #include <firn/transfer/gather.h>
-#include <firn/transfer/quad-inl.h>
+#include <firn/transfer/nodes-inl.h>
+#include <firn/transfer/tile.h>
 #include <firn/transfer/weights-inl.h>
 
 #include <cmath>
@@ -23,150 +24,156 @@ struct Against {
   static constexpr int kGradientIndex = kMoment ? 1 : 0;
 };
 
+/// Weights of a batch of particles.
 template <Kernel kernel, Form form, class Real, int dim>
-struct GatherBatch {
-  static constexpr int kSupport = support(kernel);
-  static constexpr int kAgainst = Against<kernel, form>::kCount;
-  static constexpr std::size_t kCount = Lanes<Real>::kCount;
-
-  HWY_ALIGN Real weight[dim][kSupport][kCount];
-  HWY_ALIGN Real other[kAgainst][dim][kSupport][kCount];
-  HWY_ALIGN Real velocity[kCount * kNodeWidth];
-  HWY_ALIGN Real change[kCount * kNodeWidth];
-  HWY_ALIGN Real sums[kAgainst][dim][kCount * kNodeWidth];
-};
-
-template <Kernel kernel, Form form, class Real, int dim>
-HWY_INLINE void fill_weights(const ParticleColumns<Real, dim>& particles, std::uint32_t p,
-                             GatherBatch<kernel, form, Real, dim>& batch) {
+struct GatherWeights {
   using L = Lanes<Real>;
   using A = Against<kernel, form>;
-  for (int d = 0; d < dim; ++d) {
-    const AxisWeights<kernel, L> axis(load_lanes(particles.offset[d] + p));
-    for (int a = 0; a < support(kernel); ++a) {
-      store_lanes(axis.w[a], batch.weight[d][a], L::kCount);
-      if constexpr (A::kMoment) store_lanes(axis.w[a] * axis.distance[a], batch.other[0][d][a], L::kCount);
-      if constexpr (A::kGradient) store_lanes(axis.dw[a], batch.other[A::kGradientIndex][d][a], L::kCount);
+
+  L weight[dim][support(kernel)];
+  L other[A::kCount][dim][support(kernel)];
+
+  HWY_INLINE GatherWeights(const ParticleColumns<Real, dim>& particles, std::uint32_t p) {
+    for (int d = 0; d < dim; ++d) {
+      const AxisWeights<kernel, L> axis(load_lanes(particles.offset[d] + p));
+      for (int a = 0; a < support(kernel); ++a) {
+        weight[d][a] = axis.w[a];
+        if constexpr (A::kMoment) other[0][d][a] = axis.w[a] * axis.distance[a];
+        if constexpr (A::kGradient) other[A::kGradientIndex][d][a] = axis.dw[a];
+      }
     }
   }
+};
+
+/// sum w_ip v_i, and for each other weight k and axis d the sum with that weight in place of w on that axis.
+template <Kernel kernel, Form form, class Real, int dim>
+struct GatherSums {
+  Vec<Lanes<Real>, dim> v;
+  Vec<Lanes<Real>, dim> against[Against<kernel, form>::kCount][dim];
+};
+
+template <int dim, class L>
+HWY_INLINE void add_product(L w, const Vec<L, dim>& v, bool begin, Vec<L, dim>& sum) {
+  for (int i = 0; i < dim; ++i) sum[i] = begin ? w * v[i] : mul_add(w, v[i], sum[i]);
 }
 
-/// sum over the nodes of a row of w_a v_a and of the other weights times v_a.
+/// Sum factorisation: along a row first, then over rows, then over planes. All lanes at once, wherever their particles
+/// lie in the tile: `nodes` is its begin and `first` the place of each particle's first node.
 template <Kernel kernel, Form form, class Real, int dim>
-HWY_INLINE void gather_row(const Real* HWY_RESTRICT row, const GatherBatch<kernel, form, Real, dim>& batch,
-                           std::size_t lane, Quad<Real>& sum, Quad<Real> (&against)[Against<kernel, form>::kCount]) {
-  using Q = Quad<Real>;
-  constexpr int kLast = dim - 1;
-  for (int a = 0; a < support(kernel); ++a) {
-    const Q v = Q::load(row + a * kNodeWidth);
-    const Q w = Q::broadcast(batch.weight[kLast][a][lane]);
-    sum = a == 0 ? w * v : mul_add(w, v, sum);
-    for (int k = 0; k < Against<kernel, form>::kCount; ++k) {
-      const Q other = Q::broadcast(batch.other[k][kLast][a][lane]);
-      against[k] = a == 0 ? other * v : mul_add(other, v, against[k]);
-    }
-  }
-}
-
-/// Sum factorisation: along a row first, then over rows, then over planes.
-template <Kernel kernel, Form form, class Real, int dim>
-HWY_INLINE void gather_particle(const Real* HWY_RESTRICT first, GatherBatch<kernel, form, Real, dim>& batch,
-                                std::size_t lane) {
-  using Q = Quad<Real>;
-  constexpr int kAgainst = Against<kernel, form>::kCount;
-  Q v = Q::zero(), sums[kAgainst][dim];
-  for (auto& axes : sums) {
-    for (Q& sum : axes) sum = Q::zero();
-  }
-  for (int a = 0; a < support(kernel); ++a) {
-    const Real* HWY_RESTRICT plane = first + a * tile_stride<dim>(kernel, 0);
-    Q plane_v, plane_sums[kAgainst][dim];  // [k][d]: other weight k on axis d, for d > 0
-    if constexpr (dim == 2) {
-      Q against[kAgainst];
-      gather_row(plane, batch, lane, plane_v, against);
-      for (int k = 0; k < kAgainst; ++k) plane_sums[k][1] = against[k];
-    } else {
-      plane_v = Q::zero();
-      for (int k = 0; k < kAgainst; ++k) plane_sums[k][1] = plane_sums[k][2] = Q::zero();
-      for (int b = 0; b < support(kernel); ++b) {
-        Q row_v, against[kAgainst];
-        gather_row(plane + b * tile_stride<dim>(kernel, 1), batch, lane, row_v, against);
-        const Q w_b = Q::broadcast(batch.weight[1][b][lane]);
-        plane_v = mul_add(w_b, row_v, plane_v);
+HWY_INLINE void gather_nodes(const Real* HWY_RESTRICT nodes, const std::int32_t* HWY_RESTRICT first,
+                             const GatherWeights<kernel, form, Real, dim>& weights,
+                             GatherSums<kernel, form, Real, dim>& sums) {
+  using V = Vec<Lanes<Real>, dim>;
+  constexpr int kAgainst = Against<kernel, form>::kCount, kSupport = support(kernel), kLast = dim - 1;
+#pragma GCC unroll 4
+  for (int a = 0; a < kSupport; ++a) {
+    V plane_v, plane_against[kAgainst][dim];  // [k][d] for d > 0
+#pragma GCC unroll 4
+    for (int b = 0; b < (dim == 3 ? kSupport : 1); ++b) {
+      const Real* HWY_RESTRICT row =
+          nodes + a * tile_stride<dim>(kernel, 0) + (dim == 3 ? b * tile_stride<dim>(kernel, 1) : 0);
+      V row_v, row_against[kAgainst];
+#pragma GCC unroll 4
+      for (int c = 0; c < kSupport; ++c) {
+        const V v = load_nodes<dim>(row + c * kNodeWidth, first);
+        add_product(weights.weight[kLast][c], v, c == 0, row_v);
+        for (int k = 0; k < kAgainst; ++k) add_product(weights.other[k][kLast][c], v, c == 0, row_against[k]);
+      }
+      if constexpr (dim == 2) {
+        plane_v = row_v;
+        for (int k = 0; k < kAgainst; ++k) plane_against[k][1] = row_against[k];
+      } else {
+        add_product(weights.weight[1][b], row_v, b == 0, plane_v);
         for (int k = 0; k < kAgainst; ++k) {
-          plane_sums[k][1] = mul_add(Q::broadcast(batch.other[k][1][b][lane]), row_v, plane_sums[k][1]);
-          plane_sums[k][2] = mul_add(w_b, against[k], plane_sums[k][2]);
+          add_product(weights.other[k][1][b], row_v, b == 0, plane_against[k][1]);
+          add_product(weights.weight[1][b], row_against[k], b == 0, plane_against[k][kLast]);
         }
       }
     }
-    const Q w_a = Q::broadcast(batch.weight[0][a][lane]);
-    v = mul_add(w_a, plane_v, v);
+    add_product(weights.weight[0][a], plane_v, a == 0, sums.v);
     for (int k = 0; k < kAgainst; ++k) {
-      sums[k][0] = mul_add(Q::broadcast(batch.other[k][0][a][lane]), plane_v, sums[k][0]);
-      for (int d = 1; d < dim; ++d) sums[k][d] = mul_add(w_a, plane_sums[k][d], sums[k][d]);
+      add_product(weights.other[k][0][a], plane_v, a == 0, sums.against[k][0]);
+      for (int d = 1; d < dim; ++d) {
+        add_product(weights.weight[0][a], plane_against[k][d], a == 0, sums.against[k][d]);
+      }
     }
-  }
-  v.store(batch.velocity + lane * kNodeWidth);
-  for (int k = 0; k < kAgainst; ++k) {
-    for (int d = 0; d < dim; ++d) sums[k][d].store(batch.sums[k][d] + lane * kNodeWidth);
   }
 }
 
 /// sum w_ip of the FLIP velocity change.
 template <Kernel kernel, Form form, class Real, int dim>
-HWY_INLINE void gather_change(const Real* HWY_RESTRICT first, GatherBatch<kernel, form, Real, dim>& batch,
-                              std::size_t lane) {
-  using Q = Quad<Real>;
-  Q sum = Q::zero();
-  for (int a = 0; a < support(kernel); ++a) {
-    for (int b = 0; b < (dim == 3 ? support(kernel) : 1); ++b) {
+HWY_INLINE Vec<Lanes<Real>, dim> gather_change(const Real* HWY_RESTRICT nodes, const std::int32_t* HWY_RESTRICT first,
+                                               const GatherWeights<kernel, form, Real, dim>& weights) {
+  using V = Vec<Lanes<Real>, dim>;
+  constexpr int kSupport = support(kernel), kLast = dim - 1;
+  V sum;
+#pragma GCC unroll 4
+  for (int a = 0; a < kSupport; ++a) {
+    V plane;
+#pragma GCC unroll 4
+    for (int b = 0; b < (dim == 3 ? kSupport : 1); ++b) {
       const Real* HWY_RESTRICT row =
-          first + a * tile_stride<dim>(kernel, 0) + (dim == 3 ? b * tile_stride<dim>(kernel, 1) : 0);
-      const Real w = dim == 3 ? batch.weight[0][a][lane] * batch.weight[1][b][lane] : batch.weight[0][a][lane];
-      for (int c = 0; c < support(kernel); ++c) {
-        sum = mul_add(Q::broadcast(w * batch.weight[dim - 1][c][lane]), Q::load(row + c * kNodeWidth), sum);
+          nodes + a * tile_stride<dim>(kernel, 0) + (dim == 3 ? b * tile_stride<dim>(kernel, 1) : 0);
+      V row_sum;
+#pragma GCC unroll 4
+      for (int c = 0; c < kSupport; ++c) {
+        add_product(weights.weight[kLast][c], load_nodes<dim>(row + c * kNodeWidth, first), c == 0, row_sum);
+      }
+      if constexpr (dim == 2) {
+        plane = row_sum;
+      } else {
+        add_product(weights.weight[1][b], row_sum, b == 0, plane);
       }
     }
+    add_product(weights.weight[0][a], plane, a == 0, sum);
   }
-  sum.store(batch.change + lane * kNodeWidth);
+  return sum;
 }
 
 /// Writes C_p, and grad v where it has a column of its own.
 template <Kernel kernel, Form form, class Real, int dim>
 HWY_INLINE void store_gradients(const ParticleColumns<Real, dim>& particles, std::uint32_t p, std::uint32_t count,
-                                Real inv_dx, const GatherBatch<kernel, form, Real, dim>& batch) {
+                                Real inv_dx, const GatherSums<kernel, form, Real, dim>& sums) {
   using L = Lanes<Real>;
   using A = Against<kernel, form>;
   const L inverse_D = L(static_cast<Real>(apic_inverse_D(kernel)) * inv_dx);
   for (int j = 0; j < dim; ++j) {
-    if constexpr (A::kMoment) {
-      const Vec<L, dim> column = load_from_quads<dim>(batch.sums[0][j]);
-      for (int i = 0; i < dim; ++i) store_lanes(inverse_D * column[i], particles.affine[i * dim + j] + p, count);
-    }
-    if constexpr (A::kGradient) {
-      const Vec<L, dim> column = load_from_quads<dim>(batch.sums[A::kGradientIndex][j]);
-      for (int i = 0; i < dim; ++i) {
+    for (int i = 0; i < dim; ++i) {
+      if constexpr (A::kMoment) {
+        store_lanes(inverse_D * sums.against[0][j][i], particles.affine[i * dim + j] + p, count);
+      }
+      if constexpr (A::kGradient) {
         Real* target = A::kMoment ? particles.grad_v[i * dim + j] : particles.affine[i * dim + j];
-        store_lanes(L(inv_dx) * column[i], target + p, count);
+        store_lanes(L(inv_dx) * sums.against[A::kGradientIndex][j][i], target + p, count);
       }
     }
   }
 }
 
-/// Gives particle p, which has moved by `shift` cells, its new key. False if that is not possible.
+/// Gives particle p, which has moved by `shift` cells, its new cell, or notes that it leaves the block. False if the
+/// cell is out of reach.
 template <class Real, int dim>
 bool change_cell(const ParticleColumns<Real, dim>& particles, std::uint32_t p, const Real (&shift)[dim],
-                 const Period<dim>& period) {
-  Index<dim> cell = cell_of_key<dim>(particles.cell[p]);
+                 const GatherTask<Real, dim>& task, std::vector<Leaver>& leavers) {
+  Index<dim> cell = cell_of_code<dim>(task.origin, particles.cell[p]);
+  bool stays = true;
   for (int d = 0; d < dim; ++d) {
     if (!(std::fabs(shift[d]) <= static_cast<Real>(CellKey<dim>::kCellLimit))) return false;
-    std::int64_t& c = cell[static_cast<std::size_t>(d)];
-    c += static_cast<std::int64_t>(shift[d]);
-    if (const std::int64_t length = period[static_cast<std::size_t>(d)]; length > 0)
-      c = ((c % length) + length) % length;
+    const auto axis = static_cast<std::size_t>(d);
+    cell[axis] += static_cast<std::int64_t>(shift[d]);
+    stays = stays && cell[axis] >= task.origin[axis] && cell[axis] < task.origin[axis] + kBlockSide;
+  }
+  if (stays) {
+    particles.cell[p] = cell_code<dim>(cell);
+    return true;
+  }
+  for (int d = 0; d < dim; ++d) {
+    const auto axis = static_cast<std::size_t>(d);
+    if (const std::int64_t length = task.period[axis]; length > 0) cell[axis] = (cell[axis] % length + length) % length;
   }
   if (!fits_key<dim>(cell)) return false;
-  particles.cell[p] = cell_key<dim>(cell);
+  particles.cell[p] = kNoCell;
+  leavers.push_back({task.first_place + p, cell_key<dim>(cell)});
   return true;
 }
 
@@ -174,11 +181,12 @@ bool change_cell(const ParticleColumns<Real, dim>& particles, std::uint32_t p, c
 template <class Real, int dim>
 HWY_INLINE void advect(const ParticleColumns<Real, dim>& particles, std::uint32_t p, std::uint32_t count,
                        const Vec<Lanes<Real>, dim>& u, const GatherTask<Real, dim>& task, GatherReport& report,
-                       std::vector<std::uint32_t>& movers) {
+                       std::vector<Leaver>& leavers) {
   using L = Lanes<Real>;
+  const typename L::D d_tag;
   const L cells_per_speed = L(static_cast<Real>(task.dt / task.dx));
   Vec<L, dim> shift;
-  auto moved = first_lanes<Real>(0);
+  auto moved = !first_lanes<Real>(L::kCount);
   for (int d = 0; d < dim; ++d) {
     const L offset = mul_add(cells_per_speed, u[d], load_lanes(particles.offset[d] + p));
     shift[d] = floor(offset);
@@ -186,71 +194,76 @@ HWY_INLINE void advect(const ParticleColumns<Real, dim>& particles, std::uint32_
     store_lanes(offset - shift[d], particles.offset[d] + p, count);
     moved = moved || !(shift[d] == L(Real(0)));
   }
-  if (HWY_LIKELY(!any(moved && first_lanes<Real>(count)))) return;
+  moved = moved && first_lanes<Real>(count);
+  if (!any(moved)) return;
   HWY_ALIGN Real shifts[dim][L::kCount];
   for (int d = 0; d < dim; ++d) store_lanes(shift[d], shifts[d], L::kCount);
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(d_tag, moved.m, bits);
   for (std::uint32_t lane = 0; lane < count; ++lane) {
+    if ((bits[lane / 8] >> lane % 8 & 1) == 0) continue;
     Real cells[dim];
-    bool stays = true;
-    for (int d = 0; d < dim; ++d) {
-      cells[d] = shifts[d][lane];
-      stays = stays && cells[d] == Real(0);
-    }
-    if (stays) continue;
-    if (change_cell<Real, dim>(particles, p + lane, cells, task.period)) {
-      movers.push_back(p + lane);
-    } else if (report.failed == GatherReport::kNone) {
-      report.failed = p + lane;
+    for (int d = 0; d < dim; ++d) cells[d] = shifts[d][lane];
+    if (!change_cell<Real, dim>(particles, p + lane, cells, task, leavers) && report.failed == GatherReport::kNone) {
+      report.failed = task.first_place + p + lane;
     }
   }
 }
 
+/// Colliders act on v and u.
+template <class Real, int dim>
+HWY_INLINE void constrain(const ParticleColumns<Real, dim>& particles, std::uint32_t p, std::uint32_t count,
+                          const ParticleConstraint<Real, dim>& constraint, Vec<Lanes<Real>, dim>& v,
+                          Vec<Lanes<Real>, dim>& u) {
+  constexpr std::size_t kCount = Lanes<Real>::kCount;
+  HWY_ALIGN Real v_lanes[dim][kCount], u_lanes[dim][kCount];
+  Real *v_pointers[dim], *u_pointers[dim];
+  for (int i = 0; i < dim; ++i) {
+    store_lanes(v[i], v_pointers[i] = v_lanes[i], kCount);
+    store_lanes(u[i], u_pointers[i] = u_lanes[i], kCount);
+  }
+  constraint.apply(particles, p, count, v_pointers, u_pointers);
+  for (int i = 0; i < dim; ++i) {
+    v[i] = load_lanes(v_lanes[i]);
+    u[i] = load_lanes(u_lanes[i]);
+  }
+}
+
 template <Kernel kernel, Form form, class Real, int dim>
-GatherReport gather_block(const ParticleColumns<Real, dim>& particles, std::uint32_t begin, std::uint32_t end,
-                          const GatherTask<Real, dim>& task, std::vector<std::uint32_t>& movers) {
+GatherReport gather_block(const ParticleColumns<Real, dim>& particles, std::uint32_t particle_count,
+                          const GatherTask<Real, dim>& task, std::vector<Leaver>& leavers) {
   using L = Lanes<Real>;
   static constexpr auto kTileOffsets = tile_offsets<dim>(kernel);
   constexpr std::uint32_t kCount = L::kCount;
-  const Real flip = static_cast<Real>(task.settings.flip);
+  const Real flip = static_cast<Real>(task.settings.flip), inv_dx = static_cast<Real>(1 / task.dx);
   GatherReport report;
   L largest = L(Real(0));
-  GatherBatch<kernel, form, Real, dim> batch;
-  for (std::uint32_t p = begin; p < end; p += kCount) {
-    const std::uint32_t count = end - p < kCount ? end - p : kCount;
-    fill_weights(particles, p, batch);
-    for (std::uint32_t lane = 0; lane < count; ++lane) {
-      const std::int32_t first = kTileOffsets[particles.cell[p + lane] & CellKey<dim>::kCellMask];
-      gather_particle(task.velocity + first, batch, lane);
-      if (flip > Real(0)) gather_change(task.velocity_change + first, batch, lane);
+  for (std::uint32_t p = 0; p < particle_count; p += kCount) {
+    const std::uint32_t count = particle_count - p < kCount ? particle_count - p : kCount;
+    const GatherWeights<kernel, form, Real, dim> weights(particles, p);
+    HWY_ALIGN std::int32_t first[kCount];
+    for (std::uint32_t lane = 0; lane < kCount; ++lane) {
+      // Lanes behind the last particle have some code, of which the tile needs to know nothing.
+      first[lane] = kTileOffsets[particles.cell[p + lane] % kTileOffsets.size()];
     }
-    store_gradients<kernel, form, Real, dim>(particles, p, count, static_cast<Real>(1 / task.dx), batch);
+    GatherSums<kernel, form, Real, dim> sums;
+    gather_nodes(task.velocity, first, weights, sums);
+    store_gradients(particles, p, count, inv_dx, sums);
 
-    Vec<L, dim> u = load_from_quads<dim>(batch.velocity), v = u;
+    Vec<L, dim> u = sums.v, v = u;
     if (flip > Real(0)) {
-      const Vec<L, dim> change = load_from_quads<dim>(batch.change);
+      const Vec<L, dim> change = gather_change(task.velocity_change, first, weights);
       for (int i = 0; i < dim; ++i) {
         const L flip_v = load_lanes(particles.velocity[i] + p) + change[i];
         v[i] = mul_add(L(flip), flip_v - u[i], u[i]);
       }
     }
-    if (task.constraint != nullptr) {
-      HWY_ALIGN Real v_lanes[dim][kCount], u_lanes[dim][kCount];
-      Real *v_pointers[dim], *u_pointers[dim];
-      for (int i = 0; i < dim; ++i) {
-        store_lanes(v[i], v_pointers[i] = v_lanes[i], kCount);
-        store_lanes(u[i], u_pointers[i] = u_lanes[i], kCount);
-      }
-      task.constraint->apply(p, count, v_pointers, u_pointers);
-      for (int i = 0; i < dim; ++i) {
-        v[i] = load_lanes(v_lanes[i]);
-        u[i] = load_lanes(u_lanes[i]);
-      }
-    }
+    if (task.constraint != nullptr) constrain(particles, p, count, *task.constraint, v, u);
     L speed_squared = v[0] * v[0];
     for (int i = 1; i < dim; ++i) speed_squared = mul_add(v[i], v[i], speed_squared);
     largest = max(select(first_lanes<Real>(count), speed_squared, L(Real(0))), largest);
     for (int i = 0; i < dim; ++i) store_lanes(v[i], particles.velocity[i] + p, count);
-    advect<Real, dim>(particles, p, count, u, task, report, movers);
+    advect<Real, dim>(particles, p, count, u, task, report, leavers);
   }
   HWY_ALIGN Real squares[kCount];
   store_lanes(largest, squares, kCount);

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <firn/transfer/particle_columns.h>
+#include <firn/state/particle_block.h>
+#include <firn/state/particles.h>
 #include <firn/transfer/transfer_settings.h>
 
 #include <cstddef>
@@ -18,13 +19,15 @@ class ParticleConstraint {
 
   /// @param v new velocities of particles [first, first + count), one array per component, m/s
   /// @param u velocities that the particles will move with, m/s
-  virtual void apply(std::uint32_t first, std::uint32_t count, Real* const (&v)[dim], Real* const (&u)[dim]) const = 0;
+  virtual void apply(const ParticleColumns<Real, dim>& particles, std::uint32_t first, std::uint32_t count,
+                     Real* const (&v)[dim], Real* const (&u)[dim]) const = 0;
 };
 
 struct GatherReport {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  double max_speed = 0;          ///< m/s
-  std::uint32_t failed = kNone;  ///< first particle whose motion is not finite, or leaves the range of cell keys
+  double max_speed = 0;  ///< m/s
+  std::uint32_t failed =
+      kNone;  ///< place in the block of the first particle whose motion is not finite, or leaves the range of cell keys
 };
 
 /// Combines reports of consecutive ranges.
@@ -39,20 +42,22 @@ struct GatherTask {
   double dx, dt;
   TransferSettings settings;
   Period<dim> period;
+  Index<dim> origin;                                ///< lowest cell of the block
+  std::uint32_t first_place;                        ///< place in the block of the first of the particles
   const ParticleConstraint<Real, dim>* constraint;  ///< may be null
 };
 
-/// G2P and advection for particles [begin, end), all of one block.
+/// G2P and advection for `count` particles of one block.
 ///
 ///   v_p = sum w_ip v_i (PIC, APIC) blended with v_p + sum w_ip (v_i - v_i^n) (FLIP)
 ///   C_p = D^-1 sum w_ip v_i (x_i - x_p)^T; linear kernel: sum v_i grad w_ip^T
 ///   x_p += dt sum w_ip v_i
 ///
-/// Jiang et al. 2016, eq. 174-177; Jiang et al. 2015 for the linear kernel. Particles that change cell get their new
-/// key and are appended to `movers`.
+/// Jiang et al. 2016, eq. 174-177; Jiang et al. 2015 for the linear kernel. Particles that leave the block get kNoCell
+/// and are appended to `leavers`.
 template <class Real, int dim>
-using GatherBlock = GatherReport (*)(const ParticleColumns<Real, dim>&, std::uint32_t begin, std::uint32_t end,
-                                     const GatherTask<Real, dim>&, std::vector<std::uint32_t>& movers);
+using GatherBlock = GatherReport (*)(const ParticleColumns<Real, dim>&, std::uint32_t count,
+                                     const GatherTask<Real, dim>&, std::vector<Leaver>& leavers);
 
 /// The version for the settings' kernel and form and the selected SIMD target.
 template <class Real, int dim>

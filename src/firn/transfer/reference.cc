@@ -9,7 +9,7 @@ template <class Real, int dim, class Body>
 void for_each_node(const Particles<Real, dim>& particles, std::size_t p, double dx, Kernel kernel,
                    const Period<dim>& period, const Body& body) {
   const int degree = static_cast<int>(kernel) + 1;
-  const Index<dim> cell = cell_of_key<dim>(particles.cell()[p]);
+  const Index<dim> cell = cell_of_key<dim>(particles.cell(p));
   double s[dim], N[dim][4], dN[dim][4];
   for (int d = 0; d < dim; ++d) {
     s[d] = static_cast<double>(particles.real(Field::offset, d)[p]);

@@ -3,39 +3,90 @@
 #include <hwy/foreach_target.h>
 // After foreach_target.h.
 #include <firn/core/linear_algebra-inl.h>
-#include <firn/transfer/quad-inl.h>
+#include <firn/transfer/nodes-inl.h>
 #include <firn/transfer/scatter.h>
+#include <firn/transfer/tile.h>
 #include <firn/transfer/weights-inl.h>
-
-#include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace firn {
 namespace HWY_NAMESPACE {
 
-/// What one batch of particles brings to the grid, computed in lanes and stored particle by particle.
-template <Kernel kernel, class Real, int dim>
-struct ScatterBatch {
-  static constexpr int kSupport = support(kernel);
-  static constexpr std::size_t kCount = Lanes<Real>::kCount;
+/// Position of component (i, j) in the stored stress.
+template <int dim>
+constexpr int stress_index(int i, int j) {
+  if (i == j) return i;
+  return dim == 3 ? 2 + i + j : 3;  // xy 3, xz 4, yz 5; xy 3 in 2D
+}
 
-  HWY_ALIGN Real weight[dim][kSupport][kCount];
-  HWY_ALIGN Real dweight[dim][kSupport][kCount];     // gradient form only
+/// What one batch of particles brings to the grid, computed in lanes and read particle by particle.
+template <Kernel kernel, Form form, class Real, int dim>
+struct ScatterBatch {
+  static constexpr std::size_t kCount = Lanes<Real>::kCount;
+  static constexpr int kSupport = support(kernel);
+  static constexpr int kRows = power(kSupport, dim - 1);  // rows of nodes run along the last axis
+  static constexpr bool kGradient = form == Form::gradient;
+
+  // A row is handled in groups of nodes that begin at multiples of a group, so it may begin and end with nodes of
+  // weight zero.
+  static constexpr int kGroupNodes = NodeGroup<Real>::kNodes;
+  static constexpr int kGroups = (kSupport + 2 * (kGroupNodes - 1)) / kGroupNodes;
+  static constexpr int kSlots = 1 + kGroups * kGroupNodes;
+
+  HWY_ALIGN Real row_weight[kRows][kCount];
+  HWY_ALIGN Real row_gradient[kGradient ? dim - 1 : 1][kRows][kCount];  // with the derivative on one of the axes
+  HWY_ALIGN Real weight[kSlots][kCount] = {};  // on the last axis; slot 1 + a belongs to node a, the others are zero
+  HWY_ALIGN Real dweight[kGradient ? kSlots : 1][kCount] = {};
   HWY_ALIGN Real first_node[kCount * kNodeWidth];    // momentum and mass per weight at the cell's first node
   HWY_ALIGN Real step[dim][kCount * kNodeWidth];     // how that changes from node to node on each axis
   HWY_ALIGN Real impulse[dim][kCount * kNodeWidth];  // gradient form: -dt V0 tau / dx, by columns
 };
 
 template <Kernel kernel, Form form, class Real, int dim>
-HWY_INLINE void fill_batch(const ParticleColumns<Real, dim>& particles, std::uint32_t p, Real dx, Real dt, Real affine,
-                           ScatterBatch<kernel, Real, dim>& batch) {
+HWY_INLINE void fill_weights(const ParticleColumns<Real, dim>& particles, std::uint32_t p,
+                             ScatterBatch<kernel, form, Real, dim>& batch) {
   using L = Lanes<Real>;
+  using Axis = AxisWeights<kernel, L>;
+  constexpr int kSupport = support(kernel);
+  const Axis last(load_lanes(particles.offset[dim - 1] + p));
+  for (int a = 0; a < kSupport; ++a) {
+    store_lanes(last.w[a], batch.weight[1 + a], L::kCount);
+    if constexpr (form == Form::gradient) store_lanes(last.dw[a], batch.dweight[1 + a], L::kCount);
+  }
+  const Axis x(load_lanes(particles.offset[0] + p));
+  if constexpr (dim == 2) {
+    for (int a = 0; a < kSupport; ++a) {
+      store_lanes(x.w[a], batch.row_weight[a], L::kCount);
+      if constexpr (form == Form::gradient) store_lanes(x.dw[a], batch.row_gradient[0][a], L::kCount);
+    }
+  } else {
+    const Axis y(load_lanes(particles.offset[1] + p));
+    for (int a = 0; a < kSupport; ++a) {
+      for (int b = 0; b < kSupport; ++b) {
+        const int row = a * kSupport + b;
+        store_lanes(x.w[a] * y.w[b], batch.row_weight[row], L::kCount);
+        if constexpr (form == Form::gradient) {
+          store_lanes(x.dw[a] * y.w[b], batch.row_gradient[0][row], L::kCount);
+          store_lanes(x.w[a] * y.dw[b], batch.row_gradient[1][row], L::kCount);
+        }
+      }
+    }
+  }
+}
+
+template <Kernel kernel, Form form, class Real, int dim>
+HWY_INLINE void fill_batch(const ParticleColumns<Real, dim>& particles, std::uint32_t p, Real dx, Real dt, Real affine,
+                           ScatterBatch<kernel, form, Real, dim>& batch) {
+  using L = Lanes<Real>;
+  fill_weights(particles, p, batch);
   const L mass = load_lanes(particles.mass + p);
   const L volume = load_lanes(particles.rest_volume + p);
-
   Mat<L, dim> tau;
   for (int i = 0; i < dim; ++i) {
-    for (int j = 0; j < dim; ++j) tau(i, j) = load_lanes(particles.stress[i][j] + p);
+    for (int j = 0; j <= i; ++j) {
+      tau(i, j) = load_lanes(particles.stress[stress_index<dim>(i, j)] + p);
+      tau(j, i) = tau(i, j);
+    }
   }
   // mv(x_i) / w = q + A (x_i - x_p), here per cell instead of per metre.
   Vec<L, dim> q;
@@ -44,107 +95,123 @@ HWY_INLINE void fill_batch(const ParticleColumns<Real, dim>& particles, std::uin
   const L stiffness = L(-dt * static_cast<Real>(apic_inverse_D(kernel)) / dx) * volume;
   for (int i = 0; i < dim; ++i) {
     L v = load_lanes(particles.velocity[i] + p);
-    if (particles.acceleration[i] != nullptr) v = mul_add(L(dt), load_lanes(particles.acceleration[i] + p), v);
+    if (particles.acceleration) v = mul_add(L(dt), load_lanes(particles.acceleration[i] + p), v);
     q[i] = mass * v;
     for (int j = 0; j < dim; ++j) {
       A(i, j) = spin * load_lanes(particles.affine[i * dim + j] + p);
       if constexpr (form == Form::mls) A(i, j) = mul_add(stiffness, tau(i, j), A(i, j));
     }
   }
-
   for (int d = 0; d < dim; ++d) {
-    const AxisWeights<kernel, L> axis(load_lanes(particles.offset[d] + p));
-    for (int a = 0; a < support(kernel); ++a) {
-      store_lanes(axis.w[a], batch.weight[d][a], L::kCount);
-      if constexpr (form == Form::gradient) store_lanes(axis.dw[a], batch.dweight[d][a], L::kCount);
-    }
-    for (int i = 0; i < dim; ++i) q[i] = mul_add(A(i, d), axis.distance[0], q[i]);
+    const L to_first_node = L(-static_cast<Real>(cell_offset(kernel))) - load_lanes(particles.offset[d] + p);
+    for (int i = 0; i < dim; ++i) q[i] = mul_add(A(i, d), to_first_node, q[i]);
   }
 
   const L zero = L(Real(0));
-  store_vector_as_quads<Real, dim>(q, mass, batch.first_node);
+  store_as_nodes<Real, dim>(q, mass, batch.first_node);
   const L force = L(-dt / dx) * volume;
   for (int d = 0; d < dim; ++d) {
     Vec<L, dim> column;
     for (int i = 0; i < dim; ++i) column[i] = A(i, d);
-    store_vector_as_quads<Real, dim>(column, zero, batch.step[d]);
+    store_as_nodes<Real, dim>(column, zero, batch.step[d]);
     if constexpr (form == Form::gradient) {
       for (int i = 0; i < dim; ++i) column[i] = force * tau(i, d);
-      store_vector_as_quads<Real, dim>(column, zero, batch.impulse[d]);
+      store_as_nodes<Real, dim>(column, zero, batch.impulse[d]);
     }
   }
 }
 
-/// Adds one particle to one row of nodes, which runs along the last axis.
-///
-/// @param w weight of the row; value what its first node gets per weight; step the change of value from node to node
-/// @param impulse_row in the gradient form, what the gradients on the other axes give the row, per weight on this axis
-/// @param impulse in the gradient form, -dt V0 tau e_last / dx
-template <Kernel kernel, Form form, class Real, int dim>
-HWY_INLINE void scatter_row(Real* HWY_RESTRICT row, Real w, Quad<Real> value, const Quad<Real>& step,
-                            const Quad<Real>& impulse_row, const Quad<Real>& impulse,
-                            const ScatterBatch<kernel, Real, dim>& batch, std::size_t lane) {
-  for (int a = 0; a < support(kernel); ++a) {
-    const Real w_a = batch.weight[dim - 1][a][lane];
-    Quad<Real> node = mul_add(Quad<Real>::broadcast(w * w_a), value, Quad<Real>::load(row + a * kNodeWidth));
-    if constexpr (form == Form::gradient) {
-      node = mul_add(Quad<Real>::broadcast(w_a), impulse_row, node);
-      node = mul_add(Quad<Real>::broadcast(w * batch.dweight[dim - 1][a][lane]), impulse, node);
-    }
-    node.store(row + a * kNodeWidth);
-    value = value + step;
+/// Number of each node of a group, from the node that the group begins at.
+template <class Real>
+HWY_INLINE NodeGroup<Real> node_numbers(int first) {
+  HWY_ALIGN static constexpr Real kNumbers[] = {-1, -1, -1, -1, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2,
+                                                3,  3,  3,  3,  4, 4, 4, 4, 5, 5, 5, 5, 6, 6, 6, 6};
+  NodeGroup<Real> r;
+  for (int k = 0; k < NodeGroup<Real>::kVectors; ++k) {
+    r.part[k] =
+        hn::LoadU(typename NodeGroup<Real>::D(), kNumbers + (first + 1) * kNodeWidth + k * NodeGroup<Real>::kPerVector);
   }
+  return r;
 }
 
+/// Adds one particle to its nodes: w_a w_b (w_c (q + a A_x + b A_y + c A_z)), with what does not change from row to row
+/// in registers.
 template <Kernel kernel, Form form, class Real, int dim>
-HWY_INLINE void scatter_particle(const ScatterBatch<kernel, Real, dim>& batch, std::size_t lane,
-                                 Real* HWY_RESTRICT first) {
-  using Q = Quad<Real>;
+HWY_INLINE void scatter_particle(const ScatterBatch<kernel, form, Real, dim>& batch, std::size_t lane,
+                                 Real* HWY_RESTRICT first, int shift) {
+  using G = NodeGroup<Real>;
+  using Batch = ScatterBatch<kernel, form, Real, dim>;
+  constexpr int kGroups = Batch::kGroups, kLast = dim - 1;
+  constexpr bool kGradient = form == Form::gradient;
   const std::size_t at = lane * kNodeWidth;
-  Q step[dim], impulse[dim];
+  const G q = G::repeat(batch.first_node + at);
+  G step[dim], impulse[dim];
   for (int d = 0; d < dim; ++d) {
-    step[d] = Q::load(batch.step[d] + at);
-    impulse[d] = form == Form::gradient ? Q::load(batch.impulse[d] + at) : Q::zero();
+    step[d] = G::repeat(batch.step[d] + at);
+    if constexpr (kGradient) impulse[d] = G::repeat(batch.impulse[d] + at);
   }
-  Q value = Q::load(batch.first_node + at);
-  for (int a = 0; a < support(kernel); ++a) {
-    Real* HWY_RESTRICT row = first + a * tile_stride<dim>(kernel, 0);
-    const Real w_a = batch.weight[0][a][lane];
-    const Real dw_a = form == Form::gradient ? batch.dweight[0][a][lane] : Real(0);
-    if constexpr (dim == 2) {
-      const Q impulse_row = Q::broadcast(dw_a) * impulse[0];
-      scatter_row<kernel, form, Real, dim>(row, w_a, value, step[1], impulse_row, impulse[1], batch, lane);
-    } else {
-      Q row_value = value;
-      for (int b = 0; b < support(kernel); ++b) {
-        const Real w_b = batch.weight[1][b][lane];
-        Q impulse_row = Q::zero();
-        if constexpr (form == Form::gradient) {
-          impulse_row =
-              mul_add(Q::broadcast(w_a * batch.dweight[1][b][lane]), impulse[1], Q::broadcast(dw_a * w_b) * impulse[0]);
+  G value[kGroups], to_next[kLast][kGroups], force[kLast][kGroups];
+  for (int g = 0; g < kGroups; ++g) {
+    const int node = g * Batch::kGroupNodes - shift;
+    const G w = G::spread(batch.weight[1 + node] + lane, Batch::kCount);
+    value[g] = w * mul_add(node_numbers<Real>(node), step[kLast], q);
+    if constexpr (kGradient) {
+      value[g] = mul_add(G::spread(batch.dweight[1 + node] + lane, Batch::kCount), impulse[kLast], value[g]);
+    }
+    for (int d = 0; d < kLast; ++d) {
+      to_next[d][g] = w * step[d];
+      if constexpr (kGradient) force[d][g] = w * impulse[d];
+    }
+  }
+  const auto add_row = [&](int row, const G(&row_value)[kGroups]) HWY_ATTR {
+    const int a = dim == 3 ? row / Batch::kSupport : row, b = row % Batch::kSupport;
+    Real* HWY_RESTRICT nodes =
+        first + a * tile_stride<dim>(kernel, 0) + (dim == 3 ? b * tile_stride<dim>(kernel, 1) : 0);
+    const G w = G::broadcast(batch.row_weight[row][lane]);
+    for (int g = 0; g < kGroups; ++g) {
+      const G node = G::load(nodes + g * G::kNumbers);
+      if constexpr (kGradient) {
+        // Added up before they meet the node: particles of one cell wait for each other's sums.
+        G addend = w * row_value[g];
+        for (int d = 0; d < kLast; ++d) {
+          addend = mul_add(G::broadcast(batch.row_gradient[d][row][lane]), force[d][g], addend);
         }
-        scatter_row<kernel, form, Real, dim>(row, w_a * w_b, row_value, step[2], impulse_row, impulse[2], batch, lane);
-        row += tile_stride<dim>(kernel, 1);
-        row_value = row_value + step[1];
+        (node + addend).store(nodes + g * G::kNumbers);
+      } else {
+        mul_add(w, row_value[g], node).store(nodes + g * G::kNumbers);
       }
     }
-    value = value + step[0];
+  };
+  for (int a = 0; a < Batch::kSupport; ++a) {
+    if constexpr (dim == 2) {
+      add_row(a, value);
+    } else {
+      G row_value[kGroups];
+      for (int g = 0; g < kGroups; ++g) row_value[g] = value[g];
+      for (int b = 0; b < Batch::kSupport; ++b) {
+        add_row(a * Batch::kSupport + b, row_value);
+        for (int g = 0; g < kGroups; ++g) row_value[g] = row_value[g] + to_next[1 % kLast][g];
+      }
+    }
+    for (int g = 0; g < kGroups; ++g) value[g] = value[g] + to_next[0][g];
   }
 }
 
 template <Kernel kernel, Form form, class Real, int dim>
-void scatter_block(const ParticleColumns<Real, dim>& particles, std::uint32_t begin, std::uint32_t end, double dx,
-                   double dt, const TransferSettings& settings, Real* tile) {
+void scatter_block(const ParticleColumns<Real, dim>& particles, std::uint32_t count, double dx, double dt,
+                   const TransferSettings& settings, Real* tile) {
+  using Batch = ScatterBatch<kernel, form, Real, dim>;
   static constexpr auto kTileOffsets = tile_offsets<dim>(kernel);
-  constexpr std::uint32_t kCount = Lanes<Real>::kCount;
-  ScatterBatch<kernel, Real, dim> batch;
-  for (std::uint32_t p = begin; p < end; p += kCount) {
+  Batch batch;
+  for (std::uint32_t p = 0; p < count; p += Batch::kCount) {
     fill_batch<kernel, form, Real, dim>(particles, p, static_cast<Real>(dx), static_cast<Real>(dt),
                                         static_cast<Real>(settings.affine), batch);
-    const std::uint32_t count = end - p < kCount ? end - p : kCount;
-    for (std::uint32_t lane = 0; lane < count; ++lane) {
-      const std::int32_t first = kTileOffsets[particles.cell[p + lane] & CellKey<dim>::kCellMask];
-      scatter_particle<kernel, form, Real, dim>(batch, lane, tile + first);
+    const std::uint32_t lanes = count - p < Batch::kCount ? count - p : Batch::kCount;
+    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+      const std::uint8_t cell = particles.cell[p + lane];
+      if (cell == kNoCell) continue;
+      const int shift = cell % Batch::kGroupNodes;
+      scatter_particle(batch, lane, tile + kTileOffsets[cell] - shift * kNodeWidth, shift);
     }
   }
 }

@@ -1,0 +1,189 @@
+#pragma once
+
+#include <firn/integrators/block_colliders.h>
+#include <firn/integrators/step.h>
+#include <firn/materials/update_stress.h>
+#include <firn/transfer/gather.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+/// What the verbs on particles share when they work on one block.
+namespace firn {
+
+/// What a pass over one block has to say; combined in the order of blocks.
+struct BlockReport {
+  double max_speed = 0;                           ///< m/s
+  double wave_speed = 0;                          ///< m/s
+  std::unique_ptr<ParticleFailure> failure = {};  ///< the block's first
+
+  /// Notes the failure of particle p of these columns, unless there is one already.
+  template <class Real, int dim>
+  void note_failure(const World<Real, dim>& world, std::size_t material, const ParticleColumns<Real, dim>& columns,
+                    std::uint32_t p, const Index<dim>& origin, std::string_view cause);
+};
+
+/// Puts the reports of all blocks into the material's speeds and the step's report.
+template <class Real, int dim>
+void combine(MaterialSet<Real, dim>& material, std::vector<BlockReport>& blocks, bool speeds, bool waves,
+             StepReport& report) {
+  double max_speed = 0, wave_speed = 0;
+  for (BlockReport& block : blocks) {
+    max_speed = std::max(max_speed, block.max_speed);
+    wave_speed = std::max(wave_speed, block.wave_speed);
+    if (block.failure && !report.failure) report.failure = *block.failure;
+  }
+  if (speeds) material.max_speed = max_speed;
+  if (waves) material.wave_speed = wave_speed;
+}
+
+template <class Real, int dim>
+Vec<double, dim> position_in_block(const ParticleColumns<Real, dim>& columns, std::uint32_t p, const Index<dim>& origin,
+                                   double dx, Kernel kernel) {
+  const Index<dim> cell = cell_of_code<dim>(origin, columns.cell[p]);
+  Vec<double, dim> x;
+  for (int d = 0; d < dim; ++d) {
+    x[d] = dx * (static_cast<double>(cell[static_cast<std::size_t>(d)]) + cell_offset(kernel) +
+                 static_cast<double>(columns.offset[d][p]));
+  }
+  return x;
+}
+
+template <class Real, int dim>
+void BlockReport::note_failure(const World<Real, dim>& world, std::size_t material,
+                               const ParticleColumns<Real, dim>& columns, std::uint32_t p, const Index<dim>& origin,
+                               std::string_view cause) {
+  if (failure) return;
+  failure = std::make_unique<ParticleFailure>();
+  failure->material = material;
+  failure->id = columns.id[p];
+  failure->cause = cause;
+  const auto x = position_in_block<Real, dim>(columns, p, origin, world.grid.dx(), world.grid.kernel());
+  for (int d = 0; d < dim; ++d) {
+    failure->position.push_back(x[d]);
+    failure->velocity.push_back(static_cast<double>(columns.velocity[d][p]));
+  }
+  for (int e = 0; e < dim * dim; ++e) failure->strain.push_back(static_cast<double>(columns.strain[e][p]));
+}
+
+/// Applies the colliders near a block to its particles' velocities.
+template <class Real, int dim>
+class ColliderConstraint final : public ParticleConstraint<Real, dim> {
+ public:
+  ColliderConstraint(const Grid<Real, dim>& grid, const Index<dim>& origin,
+                     std::span<const PosedCollider<dim>* const> colliders)
+      : grid_(grid), origin_(origin), colliders_(colliders) {}
+
+  void apply(const ParticleColumns<Real, dim>& particles, std::uint32_t first, std::uint32_t count,
+             Real* const (&v)[dim], Real* const (&u)[dim]) const override {
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      const auto x = position_in_block<Real, dim>(particles, first + lane, origin_, grid_.dx(), grid_.kernel());
+      for (const PosedCollider<dim>* collider : colliders_) {
+        if (!(collider->distance(x) < 0)) continue;
+        for (Real* const(*velocity)[dim] : {&v, &u}) {
+          Vec<double, dim> w;
+          for (int i = 0; i < dim; ++i) w[i] = (*velocity)[i][lane];
+          w = collider->admissible(x, w);
+          for (int i = 0; i < dim; ++i) (*velocity)[i][lane] = static_cast<Real>(w[i]);
+        }
+      }
+    }
+  }
+
+ private:
+  const Grid<Real, dim>& grid_;
+  const Index<dim>& origin_;
+  std::span<const PosedCollider<dim>* const> colliders_;
+};
+
+/// Everything that G2P needs of one block of the grid, whichever material it is for.
+template <class Real, int dim>
+class BlockNodes {
+ public:
+  BlockNodes(const World<Real, dim>& world, const BlockColliders<dim>& colliders, std::size_t b)
+      : origin_(block_origin<dim>(world.grid.particle_blocks()[b])),
+        near_(colliders.near(world.grid.particle_blocks()[b], cell_offset(world.grid.kernel()))),
+        constraint_(world.grid, origin_, near_) {
+    load(
+        world.grid, b, [&](std::size_t g) { return world.grid.nodes(g); }, velocity_);
+    if (world.grid.has_velocity_change()) {
+      load(
+          world.grid, b, [&](std::size_t g) { return world.grid.velocity_change(g); }, change_);
+    }
+  }
+  BlockNodes(const BlockNodes&) = delete;
+  BlockNodes& operator=(const BlockNodes&) = delete;
+
+  const Index<dim>& origin() const { return origin_; }
+
+  /// @param first_place place in the block of the first particle that is gathered
+  GatherTask<Real, dim> task(const World<Real, dim>& world, double dt, std::uint32_t first_place) const {
+    return {velocity_, change_,        world.grid.dx(),
+            dt,        world.transfer, world.grid.period(),
+            origin_,   first_place,    near_.empty() ? nullptr : &constraint_};
+  }
+
+ private:
+  /// Copies the node values that the block's particles touch into one tile.
+  template <class NodesOf>
+  static void load(const Grid<Real, dim>& grid, std::size_t b, const NodesOf& nodes_of, Real* tile) {
+    const int side = tile_side(grid.kernel()), row = tile_row(grid.kernel()), beyond = side - kBlockSide;
+    for (int o = 0; o < kReach<dim>; ++o) {
+      const Real* nodes = nodes_of(static_cast<std::size_t>(grid.node_block_of(b, o)));
+      int from[3] = {0, 0, 0}, count[3] = {1, 1, 1};
+      for (int d = 0; d < dim; ++d) {
+        const bool upper = (o >> (dim - 1 - d) & 1) != 0;
+        from[3 - dim + d] = upper ? kBlockSide : 0;
+        count[3 - dim + d] = upper ? beyond : kBlockSide;
+      }
+      for (int i = 0; i < count[0]; ++i) {
+        for (int j = 0; j < count[1]; ++j) {
+          const int source = (i * kBlockSide + j) * kBlockSide;
+          const int target = ((from[0] + i) * side + from[1] + j) * row + from[2];
+          std::memcpy(tile + target * kNodeWidth, nodes + source * kNodeWidth,
+                      static_cast<std::size_t>(count[2] * kNodeWidth) * sizeof(Real));
+        }
+      }
+    }
+  }
+
+  static constexpr int kLargestTile = tile_nodes<dim>(Kernel::cubic) * kNodeWidth;
+  Index<dim> origin_;
+  std::vector<const PosedCollider<dim>*> near_;
+  ColliderConstraint<Real, dim> constraint_;
+  alignas(64) Real velocity_[kLargestTile];
+  alignas(64) Real change_[kLargestTile];
+};
+
+/// The columns that material laws see.
+template <class Real, int dim>
+MaterialColumns<Real, dim> material_columns(const ParticleColumns<Real, dim>& particles, int history_count) {
+  MaterialColumns<Real, dim> columns = {};
+  for (int e = 0; e < dim * dim; ++e) {
+    columns.grad_v[e] = particles.velocity_gradient()[e];
+    columns.strain[e] = particles.strain[e];
+  }
+  for (int h = 0; h < history_count; ++h) columns.history[h] = particles.history[h];
+  for (int s = 0; s < kStressComponents<dim>; ++s) columns.stress[s] = particles.stress[s];
+  return columns;
+}
+
+/// Sets the acceleration of the callback for particles that have a cell in the block.
+template <class Real, int dim>
+void evaluate_body_force(const World<Real, dim>& world, const ParticleColumns<Real, dim>& columns, std::uint32_t count,
+                         const Index<dim>& origin, double t) {
+  for (std::uint32_t p = 0; p < count; ++p) {
+    if (columns.cell[p] == kNoCell) continue;
+    const auto x = position_in_block<Real, dim>(columns, p, origin, world.grid.dx(), world.grid.kernel());
+    const auto a = world.body_force(x, columns.id[p], t);
+    for (int i = 0; i < dim; ++i) columns.acceleration[i][p] = static_cast<Real>(a[i]);
+  }
+}
+
+inline constexpr std::string_view kMotionFailed = "its velocity is not finite";
+inline constexpr std::string_view kStrainFailed = "its strain is not finite or turned inside out";
+
+}  // namespace firn

@@ -1,0 +1,148 @@
+#include <firn/core/parallel.h>
+#include <firn/integrators/block_pass.h>
+#include <firn/integrators/verb_timer.h>
+#include <firn/integrators/verbs.h>
+#include <firn/state/aligned.h>
+#include <firn/transfer/scatter.h>
+
+#include <algorithm>
+
+namespace firn {
+namespace {
+
+/// Particles that go through gather, update_stress and scatter together. What passes between those, 72 bytes a particle
+/// in single precision, then stays in the first-level cache.
+constexpr std::uint32_t kBatch = 64;
+
+/// Room for the fields of one batch that do not survive the step. One per thread.
+ParticleStorage passing_storage(const ParticleLayout& layout) {
+  constexpr std::size_t kPadding = 64;
+  thread_local AlignedVector<std::byte> memory;
+  memory.resize(std::max(memory.size(), static_cast<std::size_t>(layout.bytes) * kBatch + kPadding));
+  return {memory.data(), kBatch};
+}
+
+/// One material's way through the fused step.
+template <class Real, int dim>
+class Pass {
+ public:
+  Pass(World<Real, dim>& world, std::size_t m, const BlockColliders<dim>& colliders, double dt, double next_dt)
+      : world_(world),
+        m_(m),
+        material_(world.materials[m]),
+        particles_(material_.particles),
+        colliders_(colliders),
+        dt_(dt),
+        next_dt_(next_dt),
+        gather_(gather_function<Real, dim>(world.transfer)),
+        update_(update_stress_function<Real, dim>(material_.model)),
+        scatter_(scatter_function<Real, dim>(world.transfer)) {}
+
+  /// Takes the particles that stay in block b of the grid to its tile, and those that leave to the block's outbox.
+  void run(std::size_t b, BlockReport& report) {
+    Grid<Real, dim>& grid = world_.grid;
+    if (m_ == 0) std::fill_n(grid.tile(b), grid.tile_size() * static_cast<std::size_t>(grid.layers()), Real(0));
+    if (material_.block_at[b] < 0) return;
+    const auto own = static_cast<std::size_t>(material_.block_at[b]);
+    const BlockNodes<Real, dim> nodes(world_, colliders_, b);
+    const std::uint32_t particles = particles_.block_size(own);
+    const ParticleStorage passing = passing_storage(particles_.layout());
+    std::vector<Leaver>& leavers = particles_.leavers(own);
+    for (std::uint32_t first = 0; first < particles; first += kBatch) {
+      const std::uint32_t count = std::min(kBatch, particles - first);
+      const auto columns = particles_.columns(own, first, passing);
+      particles_.prefetch_kept(own, first + kBatch, kBatch);
+      const std::size_t left_before = leavers.size();
+      const GatherReport gathered = gather_(columns, count, nodes.task(world_, dt_, first), leavers);
+      const StressReport updated =
+          update_(material_.parameters, material_columns<Real, dim>(columns, particles_.history_count()), 0, count,
+                  static_cast<Real>(dt_));
+      if (leavers.size() > left_before) particles_.send(own, left_before, passing, first);
+      note(columns, gathered, updated, first, nodes.origin(), report);
+      scatter_batch(columns, count, nodes.origin(), grid.tile(b));
+    }
+    particles_.close_gaps_of_kept(own);
+  }
+
+  /// Takes arrivals to their blocks and the blocks' tiles.
+  void deliver(typename Particles<Real, dim>::Arrivals arrivals) {
+    const std::size_t b = arrivals.block;
+    const ParticleStorage passing = passing_storage(particles_.layout());
+    Real* tile = world_.grid.tile_of(particles_.block_key(b));
+    const Index<dim> origin = block_origin<dim>(particles_.block_key(b));
+    particles_.make_room(arrivals);
+    for (const std::size_t end = arrivals.end; arrivals.begin < end; arrivals.begin = arrivals.end) {
+      arrivals.end = std::min<std::size_t>(end, arrivals.begin + kBatch);
+      const auto columns = particles_.columns(b, particles_.block_size(b), passing);
+      particles_.receive(arrivals, passing);
+      scatter_batch(columns, static_cast<std::uint32_t>(arrivals.end - arrivals.begin), origin, tile);
+    }
+  }
+
+ private:
+  void note(const ParticleColumns<Real, dim>& columns, const GatherReport& gathered, const StressReport& updated,
+            std::uint32_t first, const Index<dim>& origin, BlockReport& report) const {
+    report.max_speed = std::max(report.max_speed, gathered.max_speed);
+    report.wave_speed = std::max(report.wave_speed, updated.wave_speed);
+    if (gathered.failed != GatherReport::kNone) {
+      report.template note_failure<Real, dim>(world_, m_, columns, gathered.failed - first, origin, kMotionFailed);
+    } else if (updated.failed != StressReport::kNone) {
+      report.template note_failure<Real, dim>(world_, m_, columns, static_cast<std::uint32_t>(updated.failed), origin,
+                                              kStrainFailed);
+    }
+  }
+
+  void scatter_batch(const ParticleColumns<Real, dim>& columns, std::uint32_t count, const Index<dim>& origin,
+                     Real* tile) const {
+    if (world_.body_force) evaluate_body_force<Real, dim>(world_, columns, count, origin, world_.t + dt_);
+    for (int layer = 0; layer < world_.grid.layers(); ++layer) {
+      scatter_(columns, count, world_.grid.dx(), layer == 0 ? next_dt_ : 0, world_.transfer,
+               tile + static_cast<std::size_t>(layer) * world_.grid.tile_size());
+    }
+  }
+
+  World<Real, dim>& world_;
+  std::size_t m_;
+  MaterialSet<Real, dim>& material_;
+  Particles<Real, dim>& particles_;
+  const BlockColliders<dim>& colliders_;
+  double dt_, next_dt_;
+  GatherBlock<Real, dim> gather_;
+  UpdateStress<Real, dim> update_;
+  ScatterBlock<Real, dim> scatter_;
+};
+
+}  // namespace
+
+template <class Real, int dim>
+void gather_to_scatter(World<Real, dim>& world, double dt, double next_dt, StepReport& report) {
+  const VerbTimer timer(world.verb_times, Verb::gather_to_scatter);
+  const BlockColliders<dim> colliders(world.colliders, world.t + dt, world.grid.dx());
+  const std::size_t blocks = world.grid.particle_blocks().size();
+  // Material by material, so that every tile sums its particles in the order in which scatter would.
+  for (std::size_t m = 0; m < world.materials.size(); ++m) {
+    auto& material = world.materials[m];
+    Pass<Real, dim> pass(world, m, colliders, dt, next_dt);
+    std::vector<BlockReport> reports(blocks);
+    parallel_each(blocks, [&](std::size_t b) { pass.run(b, reports[b]); });
+    combine(material, reports, true, true, report);
+
+    const auto arrivals = material.particles.route();
+    std::vector<std::uint64_t> keys;
+    for (const auto& group : arrivals) keys.push_back(material.particles.block_key(group.block));
+    world.grid.add_tiles(keys);
+    parallel_each(arrivals.size(), [&](std::size_t k) { pass.deliver(arrivals[k]); });
+    material.particles.settle();
+  }
+  activate_blocks(world);
+}
+
+#define FIRN_INSTANTIATE(Real, dim) \
+  template void gather_to_scatter<Real, dim>(World<Real, dim>&, double, double, StepReport&);
+FIRN_INSTANTIATE(float, 2)
+FIRN_INSTANTIATE(float, 3)
+FIRN_INSTANTIATE(double, 2)
+FIRN_INSTANTIATE(double, 3)
+#undef FIRN_INSTANTIATE
+
+}  // namespace firn

@@ -1,0 +1,137 @@
+// Node values in SIMD vectors: neighbouring nodes of one row for scatter, the nodes of many particles for gather.
+
+#if defined(FIRN_TRANSFER_NODES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FIRN_TRANSFER_NODES_INL_H_
+#undef FIRN_TRANSFER_NODES_INL_H_
+#else
+#define FIRN_TRANSFER_NODES_INL_H_
+#endif
+
+#include <firn/core/linear_algebra-inl.h>
+#include <firn/state/grid.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace firn {
+namespace HWY_NAMESPACE {
+
+/// The numbers of kNodes neighbouring nodes: two where a vector holds two, otherwise one.
+template <class Real>
+struct NodeGroup {
+  static constexpr int kNodes = static_cast<int>(HWY_LANES(Real)) >= 2 * kNodeWidth ? 2 : 1;
+  static constexpr int kNumbers = kNodes * kNodeWidth;
+  using D = hn::CappedTag<Real, kNumbers>;
+  static constexpr int kPerVector = static_cast<int>(HWY_LANES(Real)) < kNumbers ? HWY_LANES(Real) : kNumbers;
+  static constexpr int kVectors = kNumbers / kPerVector;
+
+  hn::Vec<D> part[kVectors];
+
+  static HWY_INLINE NodeGroup broadcast(Real value) {
+    NodeGroup r;
+    for (int k = 0; k < kVectors; ++k) r.part[k] = hn::Set(D(), value);
+    return r;
+  }
+  /// Node n is `values[n * stride]` in all of its numbers.
+  static HWY_INLINE NodeGroup spread(const Real* HWY_RESTRICT values, std::size_t stride) {
+    if constexpr (kNodes == 1) {
+      return broadcast(values[0]);
+    } else {
+      const hn::Half<D> half;
+      return {hn::Combine(D(), hn::Set(half, values[stride]), hn::Set(half, values[0]))};
+    }
+  }
+  /// Every node is the one at `from`.
+  static HWY_INLINE NodeGroup repeat(const Real* HWY_RESTRICT from) {
+    if constexpr (kNodes == 1) {
+      return load(from);
+    } else {
+      const hn::Half<D> half;
+      const auto one = hn::Load(half, from);
+      return {hn::Combine(D(), one, one)};
+    }
+  }
+  static HWY_INLINE NodeGroup load(const Real* HWY_RESTRICT from) {
+    NodeGroup r;
+    for (int k = 0; k < kVectors; ++k) r.part[k] = hn::Load(D(), from + k * kPerVector);
+    return r;
+  }
+  HWY_INLINE void store(Real* HWY_RESTRICT to) const {
+    for (int k = 0; k < kVectors; ++k) hn::Store(part[k], D(), to + k * kPerVector);
+  }
+
+  friend HWY_INLINE NodeGroup operator+(const NodeGroup& a, const NodeGroup& b) {
+    NodeGroup r;
+    for (int k = 0; k < kVectors; ++k) r.part[k] = hn::Add(a.part[k], b.part[k]);
+    return r;
+  }
+  friend HWY_INLINE NodeGroup operator*(const NodeGroup& a, const NodeGroup& b) {
+    NodeGroup r;
+    for (int k = 0; k < kVectors; ++k) r.part[k] = hn::Mul(a.part[k], b.part[k]);
+    return r;
+  }
+  /// a b + c.
+  friend HWY_INLINE NodeGroup mul_add(const NodeGroup& a, const NodeGroup& b, const NodeGroup& c) {
+    NodeGroup r;
+    for (int k = 0; k < kVectors; ++k) r.part[k] = hn::MulAdd(a.part[k], b.part[k], c.part[k]);
+    return r;
+  }
+};
+
+/// Writes lane l of a vector, and of `last` as the fourth number, as the l-th node at `to`.
+template <class Real, int dim>
+HWY_INLINE void store_as_nodes(const Vec<Lanes<Real>, dim>& v, const Lanes<Real>& last, Real* HWY_RESTRICT to) {
+  const Lanes<Real> z = dim == 3 ? v[dim - 1] : Lanes<Real>(Real(0));
+  hn::StoreInterleaved4(v[0].v, v[1].v, z.v, last.v, typename Lanes<Real>::D(), to);
+}
+
+/// Vector whose 128-bit block j is at base + first[step j].
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE hn::Vec<D> load_blocks(D d, const Real* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first,
+                                  int step) {
+  constexpr int kBlocks = static_cast<int>(hn::MaxLanes(D()) * sizeof(Real) / 16);
+  if constexpr (kBlocks <= 1) {
+    return hn::Load(d, base + first[0]);
+  } else {
+    const hn::Half<D> half;
+    return hn::Combine(d, load_blocks(half, base, first + kBlocks / 2 * step, step),
+                       load_blocks(half, base, first, step));
+  }
+}
+
+/// Lane l: the first dim numbers of the node at base + first[l].
+template <int dim>
+HWY_INLINE Vec<Lanes<float>, dim> load_nodes(const float* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first) {
+  const Lanes<float>::D d;
+  const hn::Repartition<std::uint64_t, Lanes<float>::D> pairs;
+  const auto n0 = load_blocks(d, base, first, 4), n1 = load_blocks(d, base, first + 1, 4),
+             n2 = load_blocks(d, base, first + 2, 4), n3 = load_blocks(d, base, first + 3, 4);
+  // Transposes 4 x 4 numbers inside each 128-bit block.
+  const auto xy01 = hn::BitCast(pairs, hn::InterleaveLower(d, n0, n1));
+  const auto xy23 = hn::BitCast(pairs, hn::InterleaveLower(d, n2, n3));
+  Vec<Lanes<float>, dim> r;
+  r[0] = {hn::BitCast(d, hn::InterleaveLower(pairs, xy01, xy23))};
+  r[1] = {hn::BitCast(d, hn::InterleaveUpper(pairs, xy01, xy23))};
+  if constexpr (dim == 3) {
+    const auto zm01 = hn::BitCast(pairs, hn::InterleaveUpper(d, n0, n1));
+    const auto zm23 = hn::BitCast(pairs, hn::InterleaveUpper(d, n2, n3));
+    r[2] = {hn::BitCast(d, hn::InterleaveLower(pairs, zm01, zm23))};
+  }
+  return r;
+}
+template <int dim>
+HWY_INLINE Vec<Lanes<double>, dim> load_nodes(const double* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first) {
+  const Lanes<double>::D d;
+  const auto xy0 = load_blocks(d, base, first, 2), xy1 = load_blocks(d, base, first + 1, 2);
+  Vec<Lanes<double>, dim> r;
+  r[0] = {hn::InterleaveLower(d, xy0, xy1)};
+  r[1] = {hn::InterleaveUpper(d, xy0, xy1)};
+  if constexpr (dim == 3) {
+    r[2] = {hn::InterleaveLower(d, load_blocks(d, base + 2, first, 2), load_blocks(d, base + 2, first + 1, 2))};
+  }
+  return r;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace firn
+HWY_AFTER_NAMESPACE();
+
+#endif  // FIRN_TRANSFER_NODES_INL_H_
