@@ -15,9 +15,10 @@ HWY_BEFORE_NAMESPACE();
 namespace firn {
 namespace HWY_NAMESPACE {
 
-/// Length below which a vector of a matrix scaled to 1 is zero to round-off, while its square is still a normal number.
+/// Length below which a vector of a matrix scaled to 1 is zero to round-off. Much above what underflows: products of
+/// two such lengths still have squares that are normal numbers.
 template <class Real>
-inline constexpr Real kNegligibleLength = sizeof(Real) == 4 ? Real(1e-18) : Real(1e-150);
+inline constexpr Real kNegligibleLength = sizeof(Real) == 4 ? Real(1e-10) : Real(1e-20);
 
 /// c - a b, rounded once where the target has a fused multiply-add.
 template <class T>
@@ -44,24 +45,29 @@ HWY_INLINE Vec<T, 3> fused_cross(const Vec<T, 3>& a, const Vec<T, 3>& b) {
            neg_mul_add(a[1], b[0], a[0] * b[1])}};
 }
 
-/// The frame with n = t / |t|, without a branch (Duff et al. 2017, "Building an orthonormal basis, revisited", for a t
-/// that is not normalised: both divisions start at once). A negligible t gives a frame of its own.
+/// a with its sign changed where sign is negative.
 template <class T>
-HWY_INLINE Frame<T> frame_along(Vec<T, 3> t) {
-  T length_squared = fused_dot(t, t);
-  const auto negligible = length_squared < T(4 * std::numeric_limits<Scalar<T>>::min());
-  length_squared = select(negligible, T(1), length_squared);
-  t[2] = select(negligible, T(1), t[2]);
+HWY_INLINE Lanes<T> flip_sign(Lanes<T> a, Lanes<T> sign) {
+  const typename Lanes<T>::D d;
+  return {hn::Xor(a.v, hn::And(hn::SignBit(d), sign.v))};
+}
+HWY_INLINE float flip_sign(float a, float sign) { return std::signbit(sign) ? -a : a; }
+HWY_INLINE double flip_sign(double a, double sign) { return std::signbit(sign) ? -a : a; }
+
+/// The frame with n = t / |t| for t != 0, without a branch (Duff et al. 2017, "Building an orthonormal basis,
+/// revisited", for a t that is not normalised: the root and the divisions wait for nothing else).
+template <class T>
+HWY_INLINE Frame<T> frame_along(const Vec<T, 3>& t) {
+  const T length_squared = fused_dot(t, t);
   const T length = sqrt(length_squared);
   const T inverse = T(1) / length;
-  const T k = T(1) / (length * (length + abs(t[2])));
-  const T sign = copy_sign(T(1), t[2]);
+  const T k = T(1) / mul_add(length, abs(t[2]), length_squared);
   const T kx = t[0] * k, ky = t[1] * k;
   Frame<T> frame;
   for (int i = 0; i < 3; ++i) frame.n[i] = t[i] * inverse;
   const T xy = -(t[1] * kx);
-  frame.u = {{neg_mul_add(t[0], kx, T(1)), xy, -(sign * frame.n[0])}};
-  frame.w = {{sign * xy, sign * neg_mul_add(t[1], ky, T(1)), -frame.n[1]}};
+  frame.u = {{neg_mul_add(t[0], kx, T(1)), xy, flip_sign(-frame.n[0], t[2])}};
+  frame.w = {{flip_sign(xy, t[2]), flip_sign(neg_mul_add(t[1], ky, T(1)), t[2]), -frame.n[1]}};
   return frame;
 }
 
@@ -104,12 +110,13 @@ HWY_INLINE IsolatedEigenvector<T> isolated_eigenvector(const Mat<T, 3>& A) {
   // Deviator / p has the characteristic polynomial x^3 - 3 x - 2 r. Changed in sign where r < 0, its isolated
   // eigenvalue is always the largest one, in [sqrt 3, 2], and at least sqrt 3 away from the next.
   const T off_squares = mul_add(c12, c12, mul_add(c02, c02, c01 * c01));
-  const T p_squared = mul_add(T(Scalar<T>(1) / 18), mul_add(d12, d12, mul_add(d02, d02, d01 * d01)),
+  const T p_squared = mul_add(T(Scalar<T>(1) / 9), mul_add(d01, d01, d02 * d12),
                               mul_add(third, off_squares, T(4 * std::numeric_limits<Scalar<T>>::min())));
   const T det = mul_add(d0, neg_mul_add(c12, c12, d1 * d2),
                         mul_add(c02, neg_mul_add(c02, d1, c01 * c12), c01 * neg_mul_add(c01, d2, c12 * c02)));
-  const T inverse = T(1) / sqrt(p_squared);
-  const T r = min((T(0.5) * abs(det) * inverse) * (inverse * inverse), T(1));
+  const T inverse_squared = T(1) / p_squared;
+  const T inverse = sqrt(inverse_squared);
+  const T r = (T(0.5) * abs(det) * inverse_squared) * inverse;
   const T x = largest_cubic_root(r);
   const T factor = copy_sign(inverse, det);
   // Columns of the adjugate of (deviator / p - x), all multiples of the eigenvector: the longest one.
@@ -124,7 +131,7 @@ HWY_INLINE IsolatedEigenvector<T> isolated_eigenvector(const Mat<T, 3>& A) {
   IsolatedEigenvector<T> result;
   result.direction = {{select(last, a02, select(second, a01, a00)), select(last, a12, select(second, a11, a01)),
                        select(last, a22, select(second, a12, a02))}};
-  result.is_largest = det >= T(0);
+  result.is_largest = factor > T(0);  // not det >= 0: det may be a negative zero
   return result;
 }
 
@@ -143,15 +150,22 @@ HWY_INLINE SplitOff<T> split_off(const Mat<T, 3>& A) {
   SplitOff<T> split;
   const IsolatedEigenvector<T> isolated = isolated_eigenvector(A);
   split.is_largest = isolated.is_largest;
-  split.right = frame_along(isolated.direction);
-  const Vec<T, 3> An = A * split.right.n, Au = A * split.right.u, Aw = A * split.right.w;
-  // A n is long if it is the largest. If it is the smallest, the other two are long and of similar length, and the
-  // normal of their plane is well defined however short A n is.
-  const Vec<T, 3> normal = fused_cross(Au, Aw);
+  // The left vector is along A n, which is long if its value is the largest. If it is the smallest, the other two are
+  // long and of similar length, and their normal, the cofactors times n, is well defined however short A n is. A zero
+  // matrix gets some frame from a number that is lost in any other.
+  const Mat<T, 3> cofactors = transpose(adjugate(A));
   Vec<T, 3> along;
-  for (int i = 0; i < 3; ++i) along[i] = select(split.is_largest, An[i], normal[i]);
+  for (int i = 0; i < 3; ++i) {
+    T s = i == 2 ? T(kNegligibleLength<Scalar<T>>) * T(1e-8) : T(0);
+    for (int j = 0; j < 3; ++j) {
+      s = mul_add(select(split.is_largest, A(i, j), cofactors(i, j)), isolated.direction[j], s);
+    }
+    along[i] = s;
+  }
+  split.right = frame_along(isolated.direction);
   split.left = frame_along(along);
-  split.value = fused_dot(split.left.n, An);
+  const Vec<T, 3> Au = A * split.right.u, Aw = A * split.right.w;
+  split.value = fused_dot(split.left.n, A * split.right.n);
   split.rest = {{fused_dot(split.left.u, Au), fused_dot(split.left.u, Aw), fused_dot(split.left.w, Au),
                  fused_dot(split.left.w, Aw)}};
   return split;
