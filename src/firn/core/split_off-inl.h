@@ -40,6 +40,11 @@ HWY_INLINE T fused_dot(const Vec<T, 3>& a, const Vec<T, 3>& b) {
 }
 
 template <class T>
+HWY_INLINE Vec<T, 3> row(const Mat<T, 3>& A, int i) {
+  return {{A(i, 0), A(i, 1), A(i, 2)}};
+}
+
+template <class T>
 HWY_INLINE Vec<T, 3> fused_cross(const Vec<T, 3>& a, const Vec<T, 3>& b) {
   return {{neg_mul_add(a[2], b[1], a[1] * b[2]), neg_mul_add(a[0], b[2], a[2] * b[0]),
            neg_mul_add(a[1], b[0], a[0] * b[1])}};
@@ -106,7 +111,7 @@ HWY_INLINE IsolatedEigenvector<T> isolated_eigenvector(const Mat<T, 3>& A) {
   // The deviator from differences: free of the rounding of the trace.
   const T d01 = c00 - c11, d02 = c00 - c22, d12 = c11 - c22;
   const T third = T(Scalar<T>(1) / 3);
-  const T d0 = third * (d01 + d02), d1 = third * (d12 - d01), d2 = third * (-d02 - d12);
+  const T d0 = third * (d01 + d02), d1 = third * (d12 - d01), d2 = -third * (d02 + d12);
   // Deviator / p has the characteristic polynomial x^3 - 3 x - 2 r. Changed in sign where r < 0, its isolated
   // eigenvalue is always the largest one, in [sqrt 3, 2], and at least sqrt 3 away from the next.
   const T off_squares = mul_add(c12, c12, mul_add(c02, c02, c01 * c01));
@@ -153,15 +158,16 @@ HWY_INLINE SplitOff<T> split_off(const Mat<T, 3>& A) {
   // The left vector is along A n, which is long if its value is the largest. If it is the smallest, the other two are
   // long and of similar length, and their normal, the cofactors times n, is well defined however short A n is. A zero
   // matrix gets some frame from a number that is lost in any other.
-  const Mat<T, 3> cofactors = transpose(adjugate(A));
+  constexpr Scalar<T> kLost = sizeof(Scalar<T>) == 4 ? Scalar<T>(1e-18) : Scalar<T>(1e-40);
   Vec<T, 3> along;
   for (int i = 0; i < 3; ++i) {
-    T s = i == 2 ? T(kNegligibleLength<Scalar<T>>) * T(1e-8) : T(0);
-    for (int j = 0; j < 3; ++j) {
-      s = mul_add(select(split.is_largest, A(i, j), cofactors(i, j)), isolated.direction[j], s);
-    }
-    along[i] = s;
+    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+    const Vec<T, 3> cofactors = fused_cross(row(A, i1), row(A, i2));
+    Vec<T, 3> chosen;
+    for (int j = 0; j < 3; ++j) chosen[j] = select(split.is_largest, A(i, j), cofactors[j]);
+    along[i] = fused_dot(chosen, isolated.direction);
   }
+  along[2] = along[2] + T(kLost);
   split.right = frame_along(isolated.direction);
   split.left = frame_along(along);
   const Vec<T, 3> Au = A * split.right.u, Aw = A * split.right.w;

@@ -133,14 +133,14 @@ HWY_INLINE void turn_columns(const PlaneRotation<T>& r, Vec<T, 3>& p, Vec<T, 3>&
   for (int i = 0; i < 3; ++i) {
     const T a = p[i], b = q[i];
     p[i] = mul_add(r.c, a, r.s * b);
-    q[i] = mul_add(r.c, b, -(r.s * a));
+    q[i] = neg_mul_add(r.s, a, r.c * b);
   }
 }
 
 /// a^T b, the rotation by the difference of angles.
 template <class T>
 HWY_INLINE PlaneRotation<T> difference(const PlaneRotation<T>& b, const PlaneRotation<T>& a) {
-  return {mul_add(b.c, a.c, b.s * a.s), mul_add(b.s, a.c, -(b.c * a.s))};
+  return {mul_add(b.c, a.c, b.s * a.s), neg_mul_add(b.c, a.s, b.s * a.c)};
 }
 
 /// Singular value decomposition. Any finite input, also zero, singular, huge and tiny: |U S V^T - A| <= 8 eps |A|. NaN
