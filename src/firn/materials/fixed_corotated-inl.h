@@ -26,6 +26,13 @@ HWY_INLINE T fixed_corotated_energy(T mu, T lambda, const Vec<T, dim>& sigma) {
   return mu * stretch + T(0.5) * lambda * (J - T(1)) * (J - T(1));
 }
 
+/// Along the longest principal stretch, sigma^2 d2 psi / d sigma^2 = 2 mu sigma^2 + lambda J^2; at rest lambda + 2 mu.
+/// Pa.
+template <class T>
+HWY_INLINE T fixed_corotated_wave_modulus(T mu, T lambda, T J, T longest) {
+  return mul_add(lambda, max(J * J, T(1)), (mu + mu) * max(longest * longest, T(1)));
+}
+
 /// Its Kirchhoff stress, tau = 2 mu (F - R) F^T + lambda (J - 1) J I, from U and sigma of F = U diag(sigma) V^T, Pa.
 template <class T, int dim>
 HWY_INLINE Response<T, dim> fixed_corotated_response(T mu, T lambda, const Mat<T, dim>& U, const Vec<T, dim>& sigma) {
@@ -37,9 +44,7 @@ HWY_INLINE Response<T, dim> fixed_corotated_response(T mu, T lambda, const Mat<T
   for (int i = 0; i < dim; ++i) principal[i] = mul_add((mu + mu) * (sigma[i] - T(1)), sigma[i], pressure_term);
   response.tau = rotated_diagonal(U, principal);
   response.tau_zz = pressure_term;
-  // Along the longest principal stretch, sigma^2 d2 psi / d sigma^2 = 2 mu sigma^2 + lambda J^2; at rest lambda + 2 mu.
-  response.wave_modulus =
-      mul_add(lambda, max(response.J * response.J, T(1)), (mu + mu) * max(sigma[0] * sigma[0], T(1)));
+  response.wave_modulus = fixed_corotated_wave_modulus(mu, lambda, response.J, sigma[0]);
   return response;
 }
 
@@ -75,8 +80,20 @@ struct FixedCorotated {
   template <int dim>
   HWY_INLINE Response<T, dim> update(Mat<T, dim>& F, T* /*history*/, const Mat<T, dim>& grad_v, T dt) const {
     F = deformed(F, grad_v, dt);
-    const Svd<T, dim> s = svd(F);
-    return fixed_corotated_response(mu, lambda, s.U, s.sigma);
+    const Rotation<T, dim> rotation = polar_rotation(F);
+    Response<T, dim> response;
+    response.J = determinant(F);
+    response.tau_zz = lambda * (response.J - T(1)) * response.J;
+    const Mat<T, dim> P = (mu + mu) * (F - rotation.R);  // without its volumetric part
+    for (int i = 0; i < dim; ++i) {
+      for (int j = i; j < dim; ++j) {
+        T s = i == j ? response.tau_zz : T(0);
+        for (int k = 0; k < dim; ++k) s = mul_add(P(i, k), F(j, k), s);
+        response.tau(i, j) = response.tau(j, i) = s;
+      }
+    }
+    response.wave_modulus = fixed_corotated_wave_modulus(mu, lambda, response.J, rotation.largest);
+    return response;
   }
 };
 

@@ -83,19 +83,23 @@ struct Snow {
   HWY_INLINE Response<T, dim> update(Mat<T, dim>& Fe, T* history, const Mat<T, dim>& grad_v, T dt) const {
     const Mat<T, dim> trial = deformed(Fe, grad_v, dt);
     const Svd<T, dim> s = svd(trial);
+    const auto yielded = s.sigma[0] > highest || s.sigma[dim - 1] < lowest;
     Vec<T, dim> sigma;
-    T clamped_away = T(1);
-    auto yielded = s.sigma[0] > highest || s.sigma[dim - 1] < lowest;
-    for (int i = 0; i < dim; ++i) {
-      sigma[i] = min(max(s.sigma[i], lowest), highest);
-      clamped_away = clamped_away * (s.sigma[i] / sigma[i]);
-    }
+    for (int i = 0; i < dim; ++i) sigma[i] = min(max(s.sigma[i], lowest), highest);
+    // The quotient of products: one division instead of one per stretch.
+    T trial_J = s.sigma[0], J = sigma[0];
+    for (int i = 1; i < dim; ++i) trial_J = trial_J * s.sigma[i], J = J * sigma[i];
+    const T clamped_away = trial_J / J;
     // An elastic step keeps the bits of its trial state instead of a recomposed one.
     const Mat<T, dim> returned = compose(s.U, sigma, s.V);
     for (int i = 0; i < dim * dim; ++i) Fe.e[i] = select(yielded, returned.e[i], trial.e[i]);
     history[0] = select(yielded, history[0] * clamped_away, history[0]);
+    // Times h at the end: the exponential takes as long as the rotations, and neither waits for the other.
     const T h = hardening_factor(history[0]);
-    Response<T, dim> response = fixed_corotated_response(h * mu0, h * lambda0, s.U, sigma);
+    Response<T, dim> response = fixed_corotated_response(mu0, lambda0, s.U, sigma);
+    for (T& tau : response.tau.e) tau = h * tau;
+    response.tau_zz = h * response.tau_zz;
+    response.wave_modulus = h * response.wave_modulus;
     // The return map makes det Fe positive whatever came in; material turned inside out, or NaN, shows in Jp.
     response.J = select(history[0] > T(0), response.J, -response.J);
     return response;
