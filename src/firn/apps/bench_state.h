@@ -13,7 +13,8 @@
 ///   "FIRNBNCH", version, number of particles, length of the file, the settings' text, the landing,
 ///   slabs of particles, column by column, XXH64 of everything before
 ///
-/// Stress and the speeds that choose the time step are left out: prepare() derives them from what is there.
+/// Stress and the speeds that choose the time step are left out: prepare() derives them from what is there. (It
+/// may round the strain of yielding particles once more; a benchmark does not mind.)
 namespace firn {
 
 /// Of the format and of what the simulation makes of equal settings: raise it when either changes.
