@@ -1,34 +1,71 @@
 #pragma once
 
-#include <firn/integrators/world.h>
-
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace firn {
 
-/// One row of `firn bench`: a falling, spinning and deforming cube, 3D, quadratic kernel, APIC, single precision.
+/// What one row of `firn bench` runs. Words are those of the JSON document, of the filters and of scene files.
 struct BenchCase {
-  std::string model;  ///< "neo_hookean", "fixed_corotated", "snow"
-  std::int64_t particles = 1000000;
-  double particles_per_cell = 8;
+  std::string material = "neo_hookean";  ///< a model's name
+  std::string state = "fresh";
+  int dimension = 3;
+  std::string precision = "single";
+  std::string kernel = "quadratic";
+  std::string transfer = "apic";
+  std::string form = "mls";
   int threads = 1;
-  int steps = 20;  ///< timed ones; a few more go before
+  std::int64_t particles = 1000000;  ///< wanted; a cube holds the nearest power
+
+  bool operator==(const BenchCase&) const = default;
 };
 
-struct BenchResult {
-  std::int64_t particles = 0;
-  double steps_per_second[3] = {};  ///< particle-steps/s of the slowest, median and fastest step
-  double bytes_per_particle = 0;    ///< (peak resident memory - memory before seeding) / particles; 0 where unknown
-  VerbTimes verb_nanoseconds = {};  ///< per particle and step
+/// Names of all models.
+std::vector<std::string> bench_materials();
+inline const std::vector<std::string> kBenchStates = {"fresh", "landed"};
+inline const std::vector<std::string> kBenchPrecisions = {"single", "double"};
+inline const std::vector<std::string> kBenchKernels = {"linear", "quadratic", "cubic"};
+inline const std::vector<std::string> kBenchTransfers = {"pic", "flip", "pic_flip", "apic"};
+inline const std::vector<std::string> kBenchForms = {"mls", "gradient"};
+
+/// Particles along each side of the case's cube.
+std::int64_t bench_side(const BenchCase& bench);
+
+/// The form that a kernel is used with unless another is asked for: mls, and for linear kernels, which mls does not
+/// work with, gradient.
+std::string usual_form(const std::string& kernel);
+
+/// How the material moves between particles and grid, in one word: "apic", and "apic_gradient" for the form that is
+/// not the usual one, because two cases of one document must not have the same keys.
+std::string transfer_and_form(const BenchCase& bench);
+
+/// For messages: snow, landed, 3D, single, quadratic, apic, mls, 1 thread, 1000000 particles.
+std::string describe(const BenchCase& bench);
+
+/// Values of each key to run; every combination is a case. An empty list of forms: the usual one of
+/// each kernel; of threads: 1 and as many as there are.
+struct BenchSelection {
+  std::vector<std::string> materials = {"neo_hookean", "fixed_corotated", "snow"};
+  std::vector<std::string> states = kBenchStates;
+  std::vector<int> dimensions = {3};
+  std::vector<std::string> precisions = {"single"};
+  std::vector<std::string> kernels = {"quadratic"};
+  std::vector<std::string> transfers = {"apic"};
+  std::vector<std::string> forms = {};
+  std::vector<int> threads = {};
+  std::vector<std::int64_t> particles = {1000000};
 };
 
-/// Builds and times the case. Particles cross cells as in real runs, and every step sorts.
-BenchResult run_bench_case(const BenchCase& bench);
+/// Every combination that works, a repeated one once. Left out: linear kernels with the form mls, and their landed
+/// states, because their gradient does not vanish where a node's mass does and what lands tears at its surface.
+/// Error(usage) if nothing is left.
+std::vector<BenchCase> cases_of(const BenchSelection& selection);
 
-/// Fused multiply-adds of one core, 10^9 floating point operations/s, and its copy bandwidth, 10^9 bytes/s read and
-/// written.
-double measure_fma_rate();
-double measure_copy_rate();
+/// The cases behind the targets that are shares of another case's rate, after the one that they are shares of: landed,
+/// two threads, and what differs in one key from 3D, single precision, quadratic, APIC.
+std::vector<BenchCase> ratio_cases(const std::vector<std::string>& materials, std::int64_t particles);
 
 }  // namespace firn

@@ -34,7 +34,7 @@ float multiply_add_rounds(long rounds, double* operations) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include <firn/apps/bench_case.h>
+#include <firn/apps/bench_rates.h>
 #include <firn/core/simd.h>
 
 #include <chrono>
@@ -43,20 +43,13 @@ namespace firn {
 
 HWY_EXPORT(multiply_add_rounds);
 
-double measure_fma_rate() {
+double fma_rate_once() {
   constexpr long kRounds = 4000000;
-  constexpr int kRepeats = 5;
-  double best = 0;
-  volatile float sink = 0;
-  for (int i = 0; i < kRepeats; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    double operations = 0;
-    sink = FIRN_DISPATCH(multiply_add_rounds)(kRounds, &operations);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    best = operations / seconds > best ? operations / seconds : best;
-  }
+  const auto start = std::chrono::steady_clock::now();
+  double operations = 0;
+  const volatile float sink = FIRN_DISPATCH(multiply_add_rounds)(kRounds, &operations);
   (void)sink;
-  return best * 1e-9;
+  return operations / std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace firn
