@@ -1,3 +1,4 @@
+#include <firn/core/parallel.h>
 #include <firn/state/grid.h>
 
 #include <algorithm>
@@ -7,12 +8,12 @@ namespace {
 
 /// Key of the block at `origin + 4 offsets`, wrapped on periodic axes.
 template <int dim>
-std::uint64_t neighbour(std::uint64_t block, int o, int sign, const Period<dim>& period) {
+std::uint64_t neighbour(std::uint64_t block, int o, const Period<dim>& period) {
   Index<dim> origin = block_origin<dim>(block);
   for (int d = 0; d < dim; ++d) {
     if ((o >> (dim - 1 - d) & 1) == 0) continue;
     std::int64_t& c = origin[static_cast<std::size_t>(d)];
-    c += sign * kBlockSide;
+    c += kBlockSide;
     if (const std::int64_t length = period[static_cast<std::size_t>(d)]; length > 0) c = (c + length) % length;
   }
   return block_of_cell<dim>(cell_key<dim>(origin));
@@ -89,21 +90,22 @@ bool Grid<Real, dim>::activate(std::vector<std::uint64_t> particle_blocks) {
 
 template <class Real, int dim>
 void Grid<Real, dim>::link_blocks() {
-  // Each block's neighbours with the place in `upper_` where their number goes: sorted by key, equal keys are one node
-  // block.
+  // Each block's neighbours with the place in `upper_` where their number goes. Equal keys are one node block, whatever
+  // order a parallel sort gives them.
   struct Link {
     std::uint64_t key;
     std::uint32_t block, offset;
   };
-  std::vector<Link> links;
-  links.reserve(particle_blocks_.size() * kReach<dim>);
-  for (std::size_t b = 0; b < particle_blocks_.size(); ++b) {
+  constexpr auto kBlockReach = static_cast<std::size_t>(kReach<dim>);
+  std::vector<Link> links(particle_blocks_.size() * kBlockReach);
+  parallel_each(particle_blocks_.size(), [&](std::size_t b) {
     for (int o = 0; o < kReach<dim>; ++o) {
-      links.push_back({neighbour<dim>(particle_blocks_[b], o, 1, period_), static_cast<std::uint32_t>(b),
-                       static_cast<std::uint32_t>(o)});
+      links[b * kBlockReach + static_cast<std::size_t>(o)] = {neighbour<dim>(particle_blocks_[b], o, period_),
+                                                              static_cast<std::uint32_t>(b),
+                                                              static_cast<std::uint32_t>(o)};
     }
-  }
-  std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.key < b.key; });
+  });
+  tbb::parallel_sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.key < b.key; });
 
   upper_.resize(particle_blocks_.size());
   lower_.clear();

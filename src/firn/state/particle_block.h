@@ -1,12 +1,10 @@
 #pragma once
 
 #include <firn/state/particle_columns.h>
+#include <firn/state/recycled_memory.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <memory>
-#include <span>
 #include <vector>
 
 namespace firn {
@@ -20,10 +18,6 @@ struct Leaver {
 /// The particles of one block of cells, in an order of their own: those that were there before first, those that came
 /// with the last step behind them.
 struct ParticleBlock {
-  struct Free {
-    void operator()(std::byte* p) const { std::free(p); }
-  };
-
   std::uint64_t key = 0;
   std::uint32_t count = 0;
   std::vector<Leaver> leavers = {};       ///< ascending by place
@@ -33,9 +27,11 @@ struct ParticleBlock {
   ParticleStorage storage() const { return {memory_.get(), capacity_}; }
 
   /// Makes room for `particles`, keeping those that are there.
-  void reserve(const ParticleLayout& layout, std::size_t particles);
+  void reserve(const ParticleLayout& layout, RecycledMemory& recycled, std::size_t particles);
   /// Gives room back that is not needed any more.
-  void shrink(const ParticleLayout& layout);
+  void shrink(const ParticleLayout& layout, RecycledMemory& recycled);
+  /// Gives all room back.
+  void release(const ParticleLayout& layout, RecycledMemory& recycled);
   /// Copies the leavers from number `first` on to the outbox. Fields that do not survive a fused step are read from
   /// `passing`, whose first particle is the block's particle `passing_first`.
   void send(const ParticleLayout& layout, std::size_t first, ParticleStorage passing, std::size_t passing_first);
@@ -50,9 +46,9 @@ struct ParticleBlock {
 
  private:
   std::size_t capacity_ = 0;
-  std::unique_ptr<std::byte[], Free> memory_;
+  Memory memory_;
 
-  void resize(const ParticleLayout& layout, std::size_t capacity);
+  void resize(const ParticleLayout& layout, RecycledMemory& recycled, std::size_t capacity);
 };
 
 /// Bytes from one record of an outbox to the next.

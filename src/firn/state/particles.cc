@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kIndexStep = 256;
 /// New particles wait in parts of this size, so that their memory can be given back part by part while blocks fill.
-constexpr std::size_t kNewPart = 1 << 15;
+constexpr std::size_t kNewPart = 1 << 13;
 
 }  // namespace
 
@@ -124,6 +124,7 @@ void Particles<Real, dim>::append(std::span<const Vec<double, dim>> positions, d
     throw Error(ErrorKind::usage,
                 fmt::format("body number {} is too large: a scene may have 65536 bodies", body_index));
   }
+  RecycledMemory none;
   for (std::size_t n = 0; n < positions.size(); ++n) {
     const auto place = cell_position<Real, dim>(positions[n], dx, kernel, period);
     if (!fits_key<dim>(place.cell)) {
@@ -134,11 +135,11 @@ void Particles<Real, dim>::append(std::span<const Vec<double, dim>> positions, d
     }
     if (new_.empty() || new_.back().count == kNewPart) {
       new_.emplace_back();
-      new_.back().reserve(layout_, std::min(kNewPart, positions.size() - n));
+      new_.back().reserve(layout_, none, std::min(kNewPart, positions.size() - n));
     }
     ParticleBlock& part = new_.back();
     if (part.count == part.storage().capacity) {
-      part.reserve(layout_, std::min<std::size_t>(kNewPart, 2 * part.count + positions.size() - n));
+      part.reserve(layout_, none, std::min<std::size_t>(kNewPart, 2 * part.count + positions.size() - n));
     }
     const std::uint32_t i = part.count++;
     part.cells.push_back(cell_key<dim>(place.cell));
@@ -187,14 +188,17 @@ void Particles<Real, dim>::create_blocks(const std::vector<std::uint64_t>& keys)
 template <class Real, int dim>
 auto Particles<Real, dim>::route() -> std::span<const Arrivals> {
   const std::size_t width = record_bytes(layout_);
-  departures_.clear();
-  for (const ParticleBlock& block : blocks_) {
+  std::vector<std::size_t> first(blocks_.size() + 1, 0);
+  for (std::size_t b = 0; b < blocks_.size(); ++b) first[b + 1] = first[b] + blocks_[b].leavers.size();
+  departures_.resize(first.back());
+  parallel_each(blocks_.size(), [&](std::size_t b) {
+    const ParticleBlock& block = blocks_[b];
     for (std::size_t n = 0; n < block.leavers.size(); ++n) {
       const std::byte* record = block.outbox.data() + n * width;
       const ParticleStorage storage = {const_cast<std::byte*>(record), 1};
-      departures_.push_back({block.leavers[n].cell, *storage.at<std::uint32_t>(place_of(Field::id)), record});
+      departures_[first[b] + n] = {block.leavers[n].cell, *storage.at<std::uint32_t>(place_of(Field::id)), record};
     }
-  }
+  });
   // A total order, so the parallel sort has one result.
   tbb::parallel_sort(departures_.begin(), departures_.end());
 
@@ -235,11 +239,16 @@ void Particles<Real, dim>::receive(const Arrivals& arrivals, ParticleStorage pas
 
 template <class Real, int dim>
 void Particles<Real, dim>::settle() {
-  for (ParticleBlock& block : blocks_) {
-    block.leavers.clear();
-    block.outbox.clear();
-    block.shrink(layout_);
-  }
+  parallel_each(blocks_.size(), [&](std::size_t b) {
+    blocks_[b].leavers.clear();
+    // Not kept: what the busiest step needed, block by block, would be a tenth of the memory of all particles.
+    blocks_[b].outbox = {};
+    if (blocks_[b].count == 0) {
+      blocks_[b].release(layout_, recycled_);
+    } else {
+      blocks_[b].shrink(layout_, recycled_);
+    }
+  });
   std::erase_if(blocks_, [](const ParticleBlock& block) { return block.count == 0; });
   index_blocks();
 }

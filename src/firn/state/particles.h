@@ -55,9 +55,9 @@ class Particles {
 
   explicit Particles(const Options& options);
   Particles(const Particles& other);
-  Particles(Particles&&) noexcept = default;
+  Particles(Particles&&) = default;
   Particles& operator=(const Particles& other);
-  Particles& operator=(Particles&&) noexcept = default;
+  Particles& operator=(Particles&&) = default;
 
   std::size_t size() const { return first_.back(); }
   const ParticleLayout& layout() const { return layout_; }
@@ -137,7 +137,7 @@ class Particles {
   void receive(const Arrivals& arrivals, ParticleStorage passing);
   void make_room(const Arrivals& arrivals) {
     ParticleBlock& block = blocks_[arrivals.block];
-    block.reserve(layout_, block.count + (arrivals.end - arrivals.begin));
+    block.reserve(layout_, recycled_, block.count + (arrivals.end - arrivals.begin));
   }
   /// Empties the outboxes and removes empty blocks.
   void settle();
@@ -168,6 +168,7 @@ class Particles {
 
   ParticleLayout layout_;
   std::vector<HistorySpec> history_;
+  RecycledMemory recycled_;
   std::vector<ParticleBlock> blocks_;      ///< ascending by key
   std::vector<ParticleBlock> new_;         ///< appended particles that have no block yet
   std::vector<std::size_t> first_;         ///< number of the first particle of each block, then of each part of new_
