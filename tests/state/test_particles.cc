@@ -45,12 +45,14 @@ void expect_blocks_hold_their_particles(Particles<Real, dim>& particles) {
     if (b > 0) {
       ASSERT_GT(particles.block_key(b), particles.block_key(b - 1));
     }
-    const auto columns = particles.columns(b);
-    for (std::uint32_t i = 0; i < particles.block_size(b); ++i, ++next) {
-      ASSERT_EQ(block_of_cell<dim>(particles.cell(next)), particles.block_key(b));
-      ASSERT_EQ(columns.id[i], particles.id()[next]);
-      ASSERT_EQ(columns.offset[dim - 1][i], particles.real(Field::offset, dim - 1)[next]);
-    }
+    particles.for_each_chunk(b, [&](const auto& columns, std::uint32_t first, std::uint32_t count) {
+      ASSERT_EQ(next, particles.first_of_block(b) + first);
+      for (std::uint32_t i = 0; i < count; ++i, ++next) {
+        ASSERT_EQ(block_of_cell<dim>(particles.cell(next)), particles.block_key(b));
+        ASSERT_EQ(columns.id[i], particles.id()[next]);
+        ASSERT_EQ(columns.offset[dim - 1][i], particles.real(Field::offset, dim - 1)[next]);
+      }
+    });
   }
   ASSERT_EQ(next, particles.size());
 }

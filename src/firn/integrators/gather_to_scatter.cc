@@ -10,16 +10,12 @@
 namespace firn {
 namespace {
 
-/// Particles that go through gather, update_stress and scatter together. What passes between those, 72 bytes a particle
-/// in single precision, then stays in the first-level cache.
-constexpr std::uint32_t kBatch = 64;
-
-/// Room for the fields of one batch that do not survive the step. One per thread.
+/// Room for the fields of one chunk that do not survive the step. One per thread.
 ParticleStorage passing_storage(const ParticleLayout& layout) {
   constexpr std::size_t kPadding = 64;
   thread_local AlignedVector<std::byte> memory;
-  memory.resize(std::max(memory.size(), static_cast<std::size_t>(layout.bytes) * kBatch + kPadding));
-  return {memory.data(), kBatch};
+  memory.resize(std::max(memory.size(), static_cast<std::size_t>(layout.bytes) * kChunk + kPadding));
+  return {memory.data(), kChunk};
 }
 
 /// One material's way through the fused step.
@@ -48,16 +44,18 @@ class Pass {
     const std::uint32_t particles = particles_.block_size(own);
     const ParticleStorage passing = passing_storage(particles_.layout());
     std::vector<Leaver>& leavers = particles_.leavers(own);
-    for (std::uint32_t first = 0; first < particles; first += kBatch) {
-      const std::uint32_t count = std::min(kBatch, particles - first);
+    // A chunk goes through gather, update_stress and scatter together: what passes between those, 72 bytes a particle
+    // in single precision, stays in the first-level cache.
+    for (std::uint32_t first = 0; first < particles; first += kChunk) {
+      const std::uint32_t count = std::min<std::uint32_t>(kChunk, particles - first);
       const auto columns = particles_.columns(own, first, passing);
-      particles_.prefetch_kept(own, first + kBatch, kBatch);
+      particles_.prefetch_kept(own, first + kChunk);
       const std::size_t left_before = leavers.size();
       const GatherReport gathered = gather_(columns, count, nodes.task(world_, dt_, first), leavers);
       const StressReport updated =
           update_(material_.parameters, material_columns<Real, dim>(columns, particles_.history_count()), 0, count,
                   static_cast<Real>(dt_));
-      if (leavers.size() > left_before) particles_.send(own, left_before, passing, first);
+      if (leavers.size() > left_before) particles_.send(own, left_before, passing);
       note(columns, gathered, updated, first, nodes.origin(), report);
       scatter_batch(columns, count, nodes.origin(), grid.tile(b));
     }
@@ -70,12 +68,9 @@ class Pass {
     const ParticleStorage passing = passing_storage(particles_.layout());
     Real* tile = world_.grid.tile_of(particles_.block_key(b));
     const Index<dim> origin = block_origin<dim>(particles_.block_key(b));
-    particles_.make_room(arrivals);
-    for (const std::size_t end = arrivals.end; arrivals.begin < end; arrivals.begin = arrivals.end) {
-      arrivals.end = std::min<std::size_t>(end, arrivals.begin + kBatch);
-      const auto columns = particles_.columns(b, particles_.block_size(b), passing);
-      particles_.receive(arrivals, passing);
-      scatter_batch(columns, static_cast<std::uint32_t>(arrivals.end - arrivals.begin), origin, tile);
+    while (arrivals.begin < arrivals.end) {
+      const std::uint32_t first = particles_.block_size(b), count = particles_.receive(arrivals, passing);
+      scatter_batch(particles_.columns(b, first, passing), count, origin, tile);
     }
   }
 

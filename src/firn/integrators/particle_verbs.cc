@@ -49,12 +49,12 @@ void scatter(World<Real, dim>& world, double dt) {
     for (auto& material : world.materials) {
       if (material.block_at[b] < 0) continue;
       const auto own = static_cast<std::size_t>(material.block_at[b]);
-      const auto columns = material.particles.columns(own);
-      const std::uint32_t count = material.particles.block_size(own);
-      if (world.body_force) evaluate_body_force<Real, dim>(world, columns, count, origin, world.t);
-      for (int layer = 0; layer < grid.layers(); ++layer) {
-        scatter_block(columns, count, grid.dx(), layer == 0 ? dt : 0, world.transfer, grid.tile(b, layer));
-      }
+      material.particles.for_each_chunk(own, [&](const auto& columns, std::uint32_t, std::uint32_t count) {
+        if (world.body_force) evaluate_body_force<Real, dim>(world, columns, count, origin, world.t);
+        for (int layer = 0; layer < grid.layers(); ++layer) {
+          scatter_block(columns, count, grid.dx(), layer == 0 ? dt : 0, world.transfer, grid.tile(b, layer));
+        }
+      });
     }
   });
 }
@@ -73,14 +73,16 @@ void gather(World<Real, dim>& world, double dt, StepReport& report) {
       auto& material = world.materials[m];
       if (material.block_at[b] < 0) continue;
       const auto own = static_cast<std::size_t>(material.block_at[b]);
-      const auto columns = material.particles.columns(own);
-      const GatherReport gathered = gather_block(columns, material.particles.block_size(own), nodes.task(world, dt, 0),
-                                                 material.particles.leavers(own));
-      reports[m][b].max_speed = gathered.max_speed;
-      if (gathered.failed != GatherReport::kNone) {
-        reports[m][b].template note_failure<Real, dim>(world, m, columns, gathered.failed, nodes.origin(),
-                                                       kMotionFailed);
-      }
+      BlockReport& block = reports[m][b];
+      material.particles.for_each_chunk(own, [&](const auto& columns, std::uint32_t first, std::uint32_t count) {
+        const GatherReport gathered =
+            gather_block(columns, count, nodes.task(world, dt, first), material.particles.leavers(own));
+        block.max_speed = std::max(block.max_speed, gathered.max_speed);
+        if (gathered.failed != GatherReport::kNone) {
+          block.template note_failure<Real, dim>(world, m, columns, gathered.failed - first, nodes.origin(),
+                                                 kMotionFailed);
+        }
+      });
     }
   });
   for (std::size_t m = 0; m < world.materials.size(); ++m) {
@@ -97,15 +99,16 @@ void update_stress(World<Real, dim>& world, double dt, StepReport& report) {
     const UpdateStress<Real, dim> update = update_stress_function<Real, dim>(material.model);
     std::vector<BlockReport> reports(particles.block_count());
     parallel_each(particles.block_count(), [&](std::size_t b) {
-      const auto columns = particles.columns(b);
-      const StressReport updated =
-          update(material.parameters, material_columns<Real, dim>(columns, particles.history_count()), 0,
-                 particles.block_size(b), static_cast<Real>(dt));
-      reports[b].wave_speed = updated.wave_speed;
-      if (updated.failed != StressReport::kNone) {
-        reports[b].template note_failure<Real, dim>(world, m, columns, static_cast<std::uint32_t>(updated.failed),
-                                                    block_origin<dim>(particles.block_key(b)), kStrainFailed);
-      }
+      particles.for_each_chunk(b, [&](const auto& columns, std::uint32_t, std::uint32_t count) {
+        const StressReport updated =
+            update(material.parameters, material_columns<Real, dim>(columns, particles.history_count()), 0, count,
+                   static_cast<Real>(dt));
+        reports[b].wave_speed = std::max(reports[b].wave_speed, updated.wave_speed);
+        if (updated.failed != StressReport::kNone) {
+          reports[b].template note_failure<Real, dim>(world, m, columns, static_cast<std::uint32_t>(updated.failed),
+                                                      block_origin<dim>(particles.block_key(b)), kStrainFailed);
+        }
+      });
     });
     combine(material, reports, false, true, report);
   }

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <firn/state/chunk_pool.h>
 #include <firn/state/particle_columns.h>
-#include <firn/state/recycled_memory.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -16,39 +16,45 @@ struct Leaver {
 };
 
 /// The particles of one block of cells, in an order of their own: those that were there before first, those that came
-/// with the last step behind them.
-struct ParticleBlock {
+/// with the last step behind them. They lie in chunks from the pool of all particles; only the last one is not full.
+class ParticleBlock {
+ public:
   std::uint64_t key = 0;
   std::uint32_t count = 0;
   std::vector<Leaver> leavers = {};       ///< ascending by place
   std::vector<std::byte> outbox = {};     ///< their records, one after the other
   std::vector<std::uint64_t> cells = {};  ///< of particles that have no block yet: their keys, instead of codes
 
-  ParticleStorage storage() const { return {memory_.get(), capacity_}; }
+  /// The chunk of particle p, which lies in it at p % kChunk.
+  ParticleStorage chunk(std::size_t p) const { return {chunks_[p / kChunk], kChunk}; }
+  /// One number of particle p.
+  template <class T>
+  T& at(int place, std::size_t p) const {
+    return *chunk(p).at<T>(place, p % kChunk);
+  }
 
   /// Makes room for `particles`, keeping those that are there.
-  void reserve(const ParticleLayout& layout, RecycledMemory& recycled, std::size_t particles);
-  /// Gives room back that is not needed any more.
-  void shrink(const ParticleLayout& layout, RecycledMemory& recycled);
-  /// Gives all room back.
-  void release(const ParticleLayout& layout, RecycledMemory& recycled);
-  /// Copies the leavers from number `first` on to the outbox. Fields that do not survive a fused step are read from
-  /// `passing`, whose first particle is the block's particle `passing_first`.
-  void send(const ParticleLayout& layout, std::size_t first, ParticleStorage passing, std::size_t passing_first);
-  /// Asks for the fields that survive a fused step of particles [first, first + particles) to be brought into cache:
-  /// there are too many arrays, each too short, for the processor to guess.
-  void prefetch_kept(const ParticleLayout& layout, std::size_t first, std::size_t particles) const;
+  void reserve(ChunkPool& pool, std::size_t particles);
+  /// Gives back chunks without particles.
+  void shrink(ChunkPool& pool);
+
+  /// Copies the leavers from number `first` on, which lie in one chunk, to the outbox. Fields that do not survive a
+  /// fused step are read from `passing`, where they lie as in the chunk.
+  void send(const ParticleLayout& layout, std::size_t first, ParticleStorage passing);
+  /// The same for all leavers, with all fields in the block.
+  void send_all(const ParticleLayout& layout);
+  /// Asks for the fields of p's chunk that survive a fused step to be brought into cache.
+  void prefetch_kept(const ParticleLayout& layout, std::size_t p) const;
   /// Closes the gaps that leavers have left, keeping the order of the others. @param reals how many reals to move
   void close_gaps(const ParticleLayout& layout, int reals);
   /// Sorts by cell, then id.
   void order_by_cell(const ParticleLayout& layout);
-  ParticleBlock copy(const ParticleLayout& layout) const;
+  ParticleBlock copy(ChunkPool& pool) const;
 
  private:
-  std::size_t capacity_ = 0;
-  Memory memory_;
+  void copy_record(const ParticleLayout& layout, std::size_t n, ParticleStorage passing);
 
-  void resize(const ParticleLayout& layout, RecycledMemory& recycled, std::size_t capacity);
+  std::vector<std::byte*> chunks_;
 };
 
 /// Bytes from one record of an outbox to the next.
@@ -69,6 +75,18 @@ void for_each_component(const ParticleLayout& layout, int reals, const Body& bod
   body(layout.field[static_cast<std::size_t>(Field::id)], 4);
   body(layout.field[static_cast<std::size_t>(Field::body)], 2);
   body(layout.field[static_cast<std::size_t>(Field::cell)], 1);
+}
+
+/// body(first byte, bytes) for the pieces of one component of particles [begin, end), each in one chunk.
+template <class Body>
+void for_each_piece(const ParticleBlock& block, int place, int width, std::size_t begin, std::size_t end,
+                    const Body& body) {
+  const auto w = static_cast<std::size_t>(width);
+  while (begin < end) {
+    const std::size_t lane = begin % kChunk, n = end - begin < kChunk - lane ? end - begin : kChunk - lane;
+    body(block.chunk(begin).at<std::byte>(place) + lane * w, n * w);
+    begin += n;
+  }
 }
 
 }  // namespace firn

@@ -16,6 +16,12 @@ constexpr std::size_t kIndexStep = 256;
 /// New particles wait in parts of this size, so that their memory can be given back part by part while blocks fill.
 constexpr std::size_t kNewPart = 1 << 13;
 
+/// With room behind the last component, so that a whole vector may be read from any particle on.
+std::size_t chunk_bytes(const ParticleLayout& layout) {
+  constexpr std::size_t kPadding = 64;
+  return static_cast<std::size_t>(layout.bytes) * kChunk + kPadding;
+}
+
 }  // namespace
 
 template <class Real, int dim>
@@ -24,13 +30,18 @@ Particles<Real, dim>::Particles(const Options& options)
                                  {options.keeps_velocity, options.separate_grad_v, options.acceleration,
                                   static_cast<int>(options.history.size())})),
       history_(options.history),
+      pool_(std::make_unique<ChunkPool>(chunk_bytes(layout_))),
       first_(1, 0) {}
 
 template <class Real, int dim>
 Particles<Real, dim>::Particles(const Particles& other)
-    : layout_(other.layout_), history_(other.history_), first_(other.first_), block_near_(other.block_near_) {
-  for (const ParticleBlock& block : other.blocks_) blocks_.push_back(block.copy(layout_));
-  for (const ParticleBlock& part : other.new_) new_.push_back(part.copy(layout_));
+    : layout_(other.layout_),
+      history_(other.history_),
+      pool_(std::make_unique<ChunkPool>(chunk_bytes(layout_))),
+      first_(other.first_),
+      block_near_(other.block_near_) {
+  for (const ParticleBlock& block : other.blocks_) blocks_.push_back(block.copy(*pool_));
+  for (const ParticleBlock& part : other.new_) new_.push_back(part.copy(*pool_));
 }
 
 template <class Real, int dim>
@@ -81,7 +92,7 @@ template <class Real, int dim>
 std::uint64_t Particles<Real, dim>::cell(std::size_t p) const {
   const auto [block, i] = find(p);
   if (!block->cells.empty()) return block->cells[i];
-  const std::uint8_t code = *block->storage().template at<std::uint8_t>(place_of(Field::cell), i);
+  const std::uint8_t code = block->template at<std::uint8_t>(place_of(Field::cell), i);
   if (code != kNoCell) return cell_key<dim>(cell_of_code<dim>(block_origin<dim>(block->key), code));
   const auto leaver = std::lower_bound(block->leavers.begin(), block->leavers.end(), i,
                                        [](const Leaver& l, std::size_t place) { return l.place < place; });
@@ -96,7 +107,7 @@ void Particles<Real, dim>::set_cell(std::size_t p, std::uint64_t cell) {
     block.cells[i] = cell;
     return;
   }
-  std::uint8_t& code = *block.storage().template at<std::uint8_t>(place_of(Field::cell), i);
+  std::uint8_t& code = block.template at<std::uint8_t>(place_of(Field::cell), i);
   if (block_of_cell<dim>(cell) == block.key) {
     code = cell_code<dim>(cell_of_key<dim>(cell));
   } else {
@@ -124,7 +135,6 @@ void Particles<Real, dim>::append(std::span<const Vec<double, dim>> positions, d
     throw Error(ErrorKind::usage,
                 fmt::format("body number {} is too large: a scene may have 65536 bodies", body_index));
   }
-  RecycledMemory none;
   for (std::size_t n = 0; n < positions.size(); ++n) {
     const auto place = cell_position<Real, dim>(positions[n], dx, kernel, period);
     if (!fits_key<dim>(place.cell)) {
@@ -133,17 +143,13 @@ void Particles<Real, dim>::append(std::span<const Vec<double, dim>> positions, d
           fmt::format("particle {} lies more than {} cells from the origin; move the scene closer or use larger cells",
                       first_id + n, CellKey<dim>::kCellLimit));
     }
-    if (new_.empty() || new_.back().count == kNewPart) {
-      new_.emplace_back();
-      new_.back().reserve(layout_, none, std::min(kNewPart, positions.size() - n));
-    }
+    if (new_.empty() || new_.back().count == kNewPart) new_.emplace_back();
     ParticleBlock& part = new_.back();
-    if (part.count == part.storage().capacity) {
-      part.reserve(layout_, none, std::min<std::size_t>(kNewPart, 2 * part.count + positions.size() - n));
-    }
     const std::uint32_t i = part.count++;
+    part.reserve(*pool_, part.count);
     part.cells.push_back(cell_key<dim>(place.cell));
-    const ParticleColumns<Real, dim> columns = columns_of<Real, dim>(layout_, part.storage(), i, part.storage(), i);
+    const ParticleColumns<Real, dim> columns =
+        columns_of<Real, dim>(layout_, part.chunk(i), i % kChunk, part.chunk(i), i % kChunk);
     for (int d = 0; d < dim; ++d) {
       *columns.offset[d] = place.offset[d];
       *columns.strain[d * dim + d] = Real(1);
@@ -222,18 +228,32 @@ auto Particles<Real, dim>::route() -> std::span<const Arrivals> {
 }
 
 template <class Real, int dim>
-void Particles<Real, dim>::receive(const Arrivals& arrivals, ParticleStorage passing) {
+std::uint32_t Particles<Real, dim>::receive(Arrivals& arrivals, ParticleStorage passing) {
   ParticleBlock& block = blocks_[arrivals.block];
-  const bool in_block = passing.memory == block.storage().memory;
-  for (std::size_t n = arrivals.begin; n < arrivals.end; ++n) {
-    const Departure& departure = departures_[n];
+  block.reserve(*pool_, block.count + 1);
+  const ParticleStorage chunk = block.chunk(block.count);
+  const std::size_t lane = block.count % kChunk;
+  const std::size_t count = std::min(kChunk - lane, arrivals.end - arrivals.begin);
+  const std::size_t passing_lane = passing.memory == chunk.memory ? lane : 0;
+  for (std::size_t n = 0; n < count; ++n) {
+    const Departure& departure = departures_[arrivals.begin + n];
     const ParticleStorage record = {const_cast<std::byte*>(departure.record), 1};
-    const std::size_t place = block.count++;
-    copy_reals(layout_, 0, layout_.kept_reals, record, 0, block.storage(), place);
-    copy_reals(layout_, layout_.kept_reals, layout_.reals, record, 0, passing, in_block ? place : n - arrivals.begin);
-    copy_numbers(layout_, record, 0, block.storage(), place);
-    *block.storage().template at<std::uint8_t>(place_of(Field::cell), place) =
-        cell_code<dim>(cell_of_key<dim>(departure.cell));
+    copy_reals(layout_, 0, layout_.kept_reals, record, 0, chunk, lane + n);
+    copy_reals(layout_, layout_.kept_reals, layout_.reals, record, 0, passing, passing_lane + n);
+    copy_numbers(layout_, record, 0, chunk, lane + n);
+    *chunk.at<std::uint8_t>(place_of(Field::cell), lane + n) = cell_code<dim>(cell_of_key<dim>(departure.cell));
+  }
+  block.count += static_cast<std::uint32_t>(count);
+  arrivals.begin += count;
+  return static_cast<std::uint32_t>(count);
+}
+
+template <class Real, int dim>
+void Particles<Real, dim>::receive_all(Arrivals arrivals) {
+  ParticleBlock& block = blocks_[arrivals.block];
+  while (arrivals.begin < arrivals.end) {
+    block.reserve(*pool_, block.count + 1);
+    receive(arrivals, block.chunk(block.count));
   }
 }
 
@@ -243,11 +263,7 @@ void Particles<Real, dim>::settle() {
     blocks_[b].leavers.clear();
     // Not kept: what the busiest step needed, block by block, would be a tenth of the memory of all particles.
     blocks_[b].outbox = {};
-    if (blocks_[b].count == 0) {
-      blocks_[b].release(layout_, recycled_);
-    } else {
-      blocks_[b].shrink(layout_, recycled_);
-    }
+    blocks_[b].shrink(*pool_);
   });
   std::erase_if(blocks_, [](const ParticleBlock& block) { return block.count == 0; });
   index_blocks();
@@ -261,14 +277,12 @@ void Particles<Real, dim>::place_new_particles() {
   for (ParticleBlock& part : parts) {
     // The part poses as a block that all of its particles leave.
     for (std::uint32_t i = 0; i < part.count; ++i) part.leavers.push_back({i, part.cells[i]});
-    part.send(layout_, 0, part.storage(), 0);
+    part.send_all(layout_);
     part.key = std::numeric_limits<std::uint64_t>::max();
     part.count = 0;
+    part.shrink(*pool_);
     blocks_.push_back(std::move(part));
-    for (const Arrivals& arrivals : route()) {
-      make_room(arrivals);
-      receive(arrivals, blocks_[arrivals.block].storage());
-    }
+    for (const Arrivals& arrivals : route()) receive_all(arrivals);
     blocks_.pop_back();
   }
   parallel_each(blocks_.size(), [&](std::size_t b) { blocks_[b].order_by_cell(layout_); });
@@ -278,14 +292,11 @@ template <class Real, int dim>
 void Particles<Real, dim>::sort_by_block() {
   parallel_each(blocks_.size(), [&](std::size_t b) {
     if (blocks_[b].leavers.empty()) return;
-    blocks_[b].send(layout_, 0, blocks_[b].storage(), 0);
+    blocks_[b].send_all(layout_);
     blocks_[b].close_gaps(layout_, layout_.reals);
   });
   const std::span<const Arrivals> arrivals = route();
-  parallel_each(arrivals.size(), [&](std::size_t k) {
-    make_room(arrivals[k]);
-    receive(arrivals[k], blocks_[arrivals[k].block].storage());
-  });
+  parallel_each(arrivals.size(), [&](std::size_t k) { receive_all(arrivals[k]); });
   settle();
   if (new_.empty()) return;
   place_new_particles();
@@ -302,8 +313,8 @@ std::uint64_t Particles<Real, dim>::hash() const {
     // The acceleration comes last; it belongs to a scatter, not to the state.
     const int reals = layout_.reals - component_count(Field::acceleration);
     for_each_component(layout_, reals, [&](int place, int width) {
-      XXH3_64bits_update(state.get(), block.storage().template at<std::byte>(place),
-                         block.count * static_cast<std::size_t>(width));
+      for_each_piece(block, place, width, 0, block.count,
+                     [&](const std::byte* from, std::size_t bytes) { XXH3_64bits_update(state.get(), from, bytes); });
     });
   };
   for (const ParticleBlock& block : blocks_) add(block);

@@ -5,8 +5,10 @@
 #include <firn/state/kernel.h>
 #include <firn/state/particle_block.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,7 +42,7 @@ class Particles {
     Column(const Particles& particles, int place) : particles_(particles), place_(place) {}
     T& operator[](std::size_t p) const {
       const auto [block, i] = particles_.find(p);
-      return *block->storage().template at<T>(place_, i);
+      return block->template at<T>(place_, i);
     }
 
    private:
@@ -55,9 +57,9 @@ class Particles {
 
   explicit Particles(const Options& options);
   Particles(const Particles& other);
-  Particles(Particles&&) = default;
+  Particles(Particles&&) noexcept = default;
   Particles& operator=(const Particles& other);
-  Particles& operator=(Particles&&) = default;
+  Particles& operator=(Particles&&) noexcept = default;
 
   std::size_t size() const { return first_.back(); }
   const ParticleLayout& layout() const { return layout_; }
@@ -103,43 +105,47 @@ class Particles {
   std::size_t first_of_block(std::size_t b) const { return first_[b]; }
   std::vector<Leaver>& leavers(std::size_t b) { return blocks_[b].leavers; }
 
-  /// The particles of block b as plain arrays.
-  ParticleColumns<Real, dim> columns(std::size_t b) {
-    return columns_of<Real, dim>(layout_, blocks_[b].storage(), 0, blocks_[b].storage(), 0);
+  /// Particles of block b from `first` on as plain arrays, up to the end of first's chunk.
+  ParticleColumns<Real, dim> columns(std::size_t b, std::size_t first) {
+    const ParticleStorage chunk = blocks_[b].chunk(first);
+    return columns_of<Real, dim>(layout_, chunk, first % kChunk, chunk, first % kChunk);
   }
-  /// The same from particle `first` on, with the fields that do not survive a fused step in `passing`.
+  /// The same, with the fields that do not survive a fused step in `passing`, from its first element on.
   ParticleColumns<Real, dim> columns(std::size_t b, std::size_t first, ParticleStorage passing) {
-    return columns_of<Real, dim>(layout_, blocks_[b].storage(), first, passing, 0);
+    return columns_of<Real, dim>(layout_, blocks_[b].chunk(first), first % kChunk, passing, 0);
   }
-
-  /// Asks for kept fields to be brought into cache: of block b from particle `first` on, or if it has no more of them,
-  /// of the next block.
-  void prefetch_kept(std::size_t b, std::size_t first, std::size_t particles) const {
-    if (first < blocks_[b].count) {
-      blocks_[b].prefetch_kept(layout_, first, particles);
+  /// body(columns, first, count) for the chunks of block b.
+  template <class Body>
+  void for_each_chunk(std::size_t b, const Body& body) {
+    const std::uint32_t particles = blocks_[b].count;
+    for (std::uint32_t first = 0; first < particles; first += kChunk) {
+      body(columns(b, first), first, std::min<std::uint32_t>(kChunk, particles - first));
+    }
+  }
+  /// Asks for kept fields to be brought into cache: of p's chunk in block b, or if it ends before, of the next block.
+  void prefetch_kept(std::size_t b, std::size_t p) const {
+    if (p < blocks_[b].count) {
+      blocks_[b].prefetch_kept(layout_, p);
     } else if (b + 1 < blocks_.size()) {
-      blocks_[b + 1].prefetch_kept(layout_, 0, particles);
+      blocks_[b + 1].prefetch_kept(layout_, 0);
     }
   }
 
   // What sort_by_block() consists of, for a step that handles particles on their way. In this order:
 
-  /// Copies the leavers of block b from number `first_leaver` on to its outbox; `passing` as in columns().
-  void send(std::size_t b, std::size_t first_leaver, ParticleStorage passing, std::size_t passing_first) {
-    blocks_[b].send(layout_, first_leaver, passing, passing_first);
+  /// Copies the leavers of block b from number `first_leaver` on, all of one chunk, to its outbox.
+  void send(std::size_t b, std::size_t first_leaver, ParticleStorage passing) {
+    blocks_[b].send(layout_, first_leaver, passing);
   }
   /// Closes the gaps in block b, only in the fields that survive a fused step.
   void close_gaps_of_kept(std::size_t b) { blocks_[b].close_gaps(layout_, layout_.kept_reals); }
   /// Sorts all outboxes by destination and creates blocks that are missing. Block numbers change.
   std::span<const Arrivals> route();
-  /// Appends arrivals, several blocks at a time. Kept fields go to the block, the others to `passing` from its first
-  /// element on.
-  void receive(const Arrivals& arrivals, ParticleStorage passing);
-  void make_room(const Arrivals& arrivals) {
-    ParticleBlock& block = blocks_[arrivals.block];
-    block.reserve(layout_, recycled_, block.count + (arrivals.end - arrivals.begin));
-  }
-  /// Empties the outboxes and removes empty blocks.
+  /// Appends as many of the arrivals as the block's last chunk, or a new one, has room for, and takes them off the
+  /// list. Kept fields go to the block, the others to `passing` from its first element on. Returns how many. May be
+  /// called for several blocks at a time.
+  std::uint32_t receive(Arrivals& arrivals, ParticleStorage passing);
+  /// Empties the outboxes, gives unused memory back and removes empty blocks.
   void settle();
 
   /// Hash of all particles in order: equal for equal bits.
@@ -163,12 +169,13 @@ class Particles {
     return layout_.field[static_cast<std::size_t>(field)] + c * width;
   }
   void create_blocks(const std::vector<std::uint64_t>& keys);
+  void receive_all(Arrivals arrivals);
   void place_new_particles();
   void index_blocks();
 
   ParticleLayout layout_;
   std::vector<HistorySpec> history_;
-  RecycledMemory recycled_;
+  std::unique_ptr<ChunkPool> pool_;
   std::vector<ParticleBlock> blocks_;      ///< ascending by key
   std::vector<ParticleBlock> new_;         ///< appended particles that have no block yet
   std::vector<std::size_t> first_;         ///< number of the first particle of each block, then of each part of new_
