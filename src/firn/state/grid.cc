@@ -118,8 +118,17 @@ void Grid<Real, dim>::link_blocks() {
     upper_[link.block][link.offset] = static_cast<std::int32_t>(node_blocks_.size() - 1);
     lower_.back()[link.offset] = static_cast<std::int32_t>(link.block);
   }
-  nodes_.resize(node_blocks_.size() * static_cast<std::size_t>(kBlockNodes<dim> * kNodeWidth));
-  if (keeps_velocity_change_) velocity_change_.resize(nodes_.size());
+  // What nodes held is over, so nothing needs to be copied, and old and new need not be there at the same time.
+  const auto make_room = [&](AlignedVector<Real>& numbers) {
+    const std::size_t wanted = node_blocks_.size() * static_cast<std::size_t>(kBlockNodes<dim> * kNodeWidth);
+    if (wanted > numbers.capacity()) {
+      numbers = {};
+      numbers.reserve(wanted + wanted / 16);
+    }
+    numbers.resize(wanted);
+  };
+  make_room(nodes_);
+  if (keeps_velocity_change_) make_room(velocity_change_);
 }
 
 template class Grid<float, 2>;

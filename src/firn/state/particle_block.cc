@@ -56,13 +56,20 @@ void ParticleBlock::copy_record(const ParticleLayout& layout, std::size_t n, Par
   copy_numbers(layout, from, lane, record, 0);
 }
 
+void ParticleBlock::grow_outbox(const ParticleLayout& layout) {
+  const std::size_t wanted = leavers.size() * record_bytes(layout);
+  // By a quarter: doubled, the outboxes of all blocks would be several per cent of the memory of all particles.
+  if (wanted > outbox.capacity()) outbox.reserve(wanted + wanted / 4);
+  outbox.resize(wanted);
+}
+
 void ParticleBlock::send(const ParticleLayout& layout, std::size_t first, ParticleStorage passing) {
-  outbox.resize(leavers.size() * record_bytes(layout));
+  grow_outbox(layout);
   for (std::size_t n = first; n < leavers.size(); ++n) copy_record(layout, n, passing);
 }
 
 void ParticleBlock::send_all(const ParticleLayout& layout) {
-  outbox.resize(leavers.size() * record_bytes(layout));
+  grow_outbox(layout);
   for (std::size_t n = 0; n < leavers.size(); ++n) copy_record(layout, n, chunk(leavers[n].place));
 }
 

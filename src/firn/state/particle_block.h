@@ -52,6 +52,7 @@ class ParticleBlock {
   ParticleBlock copy(ChunkPool& pool) const;
 
  private:
+  void grow_outbox(const ParticleLayout& layout);
   void copy_record(const ParticleLayout& layout, std::size_t n, ParticleStorage passing);
 
   std::vector<std::byte*> chunks_;
