@@ -2,6 +2,7 @@
 
 #include <firn/core/parameter.h>
 #include <firn/materials/history_column.h>
+#include <firn/materials/strain_kind.h>
 
 #include <span>
 #include <string_view>
@@ -15,7 +16,13 @@ struct ModelInfo {
   std::string_view source;   ///< paper and equation
   std::span<const Parameter> parameters;
   std::span<const HistoryColumn> history;
+  StrainKind strain;  ///< strain_entries(strain, dim): the strain columns and their initial values
+  double minimum_J;   ///< a particle at or below it has failed; minus infinity if the model bears inversion
+  bool viscous;       ///< fills StressReport::kinematic_viscosity
 };
+
+/// The history columns of a model in dim dimensions: in three without the ones that plane strain needs.
+std::span<const HistoryColumn> history_columns(const ModelInfo& model, int dim);
 
 /// Initial mass density, kg/m^3: common to all models.
 extern const Parameter kDensity;
