@@ -30,6 +30,9 @@ struct OldroydB {
   static constexpr std::string_view kSummary =
       "Liquid with a memory: slime and dough, springy at once and runny later.";
   static constexpr std::string_view kSource = "Oldroyd 1950; Ram et al. 2015";
+  static constexpr std::string_view kFormula =
+      "db/dt = grad_v b + b grad_v^T - (b - I) / relaxation_time; tau = shear_modulus (b - I) - J p I + 2 viscosity J "
+      "dev(D), p of newtonian_fluid";
   static constexpr std::array kParameters = {
       kBulkModulus,
       kTaitExponent,
@@ -84,7 +87,7 @@ struct OldroydB {
     for (int i = 0; i < dim; ++i) {
       for (int j = i; j < dim; ++j) {
         const T strain = left * (i == j ? trial(i, i) - T(1) : T(0.5) * (trial(i, j) + trial(j, i)));
-        b(i, j) = b(j, i) = i == j ? T(1) + strain : strain;
+        b(i, j) = i == j ? T(1) + strain : strain;
         response.tau(i, j) = response.tau(j, i) = shear_modulus * strain + (i == j ? response.tau_zz : T(0));
       }
     }

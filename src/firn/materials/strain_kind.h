@@ -45,20 +45,21 @@ inline constexpr auto kStrainEntries = strain_entries<kind, dim>();
 /// The entries that a model of this kind stores in dim dimensions, ascending. The others have no column, and no model
 /// reads them.
 constexpr std::span<const StrainEntry> strain_entries(StrainKind kind, int dim) {
-  using enum StrainKind;
-  using namespace detail;
+  const auto in_dim = [dim](const auto& plane, const auto& space) {
+    return dim == 2 ? std::span<const StrainEntry>(plane) : std::span<const StrainEntry>(space);
+  };
   switch (kind) {
-    case volume_ratio:
-      return dim == 2 ? std::span<const StrainEntry>(kStrainEntries<volume_ratio, 2>)
-                      : std::span<const StrainEntry>(kStrainEntries<volume_ratio, 3>);
-    case conformation:
-      return dim == 2 ? std::span<const StrainEntry>(kStrainEntries<conformation, 2>)
-                      : std::span<const StrainEntry>(kStrainEntries<conformation, 3>);
-    case deformation_gradient:
+    case StrainKind::volume_ratio:
+      return in_dim(detail::kStrainEntries<StrainKind::volume_ratio, 2>,
+                    detail::kStrainEntries<StrainKind::volume_ratio, 3>);
+    case StrainKind::conformation:
+      return in_dim(detail::kStrainEntries<StrainKind::conformation, 2>,
+                    detail::kStrainEntries<StrainKind::conformation, 3>);
+    case StrainKind::deformation_gradient:
       break;
   }
-  return dim == 2 ? std::span<const StrainEntry>(kStrainEntries<deformation_gradient, 2>)
-                  : std::span<const StrainEntry>(kStrainEntries<deformation_gradient, 3>);
+  return in_dim(detail::kStrainEntries<StrainKind::deformation_gradient, 2>,
+                detail::kStrainEntries<StrainKind::deformation_gradient, 3>);
 }
 
 }  // namespace firn

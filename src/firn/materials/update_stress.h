@@ -48,7 +48,7 @@ template <class Real, int dim>
 UpdateStress<Real, dim> update_stress_function(int model);
 
 /// Energy density psi, J/m^3 of undeformed volume, of model number `model`. F is the strain matrix, row-major; entries
-/// that the model does not store may be anything.
+/// that the model does not store may be anything. The history has kMaxHistoryColumns values, zero where none is stored.
 template <int dim>
 double energy_density(int model, const ModelParameters&, const double* F, const double* history);
 
