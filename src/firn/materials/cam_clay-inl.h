@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace firn {
 namespace HWY_NAMESPACE {
 
-/// Soil and snow pack: non-associated Cam-Clay (NACC, Wolper et al. 2019, section 5), on Hencky instead of neo-Hookean
+/// Soil and snow pack: non-associated Cam-Clay (NACC, Wolper et al. 2019), on Hencky instead of neo-Hookean
 /// elasticity, so that the return map is exact in strains. With p = -tr(tau)/3, positive in compression, and
 /// q = sqrt(3/2) |dev tau|, yield is on the ellipse
 ///
@@ -35,7 +35,9 @@ struct CamClay {
   static constexpr std::string_view kName = "cam_clay";
   static constexpr std::string_view kSummary =
       "Soil and snow pack: packs under pressure, and breaks by shear and tension.";
-  static constexpr std::string_view kSource = "Wolper et al. 2019, section 5";
+  static constexpr std::string_view kSource = "Wolper et al. 2019";
+  static constexpr std::string_view kFormula =
+      "tau of hencky; q^2 (1 + 2 beta) + M^2 (p + beta p0) (p - p0) <= 0, p0 = K sinh(xi max(-alpha, 0))";
   static constexpr std::array kParameters = {
       kYoungsModulus,
       kPoissonRatio,

@@ -32,6 +32,7 @@ struct DruckerPrager {
   static constexpr std::string_view kName = "drucker_prager";
   static constexpr std::string_view kSummary = "Sand and other grains: friction in proportion to pressure.";
   static constexpr std::string_view kSource = "Klar et al. 2016; Tampubolon et al. 2017";
+  static constexpr std::string_view kFormula = "tau of hencky; q <= M (p + c cot phi), M = 6 sin phi / (3 - sin phi)";
   static constexpr std::array kParameters = {
       kYoungsModulus,
       kPoissonRatio,

@@ -25,6 +25,8 @@ struct Hencky {
   static constexpr std::string_view kName = "hencky";
   static constexpr std::string_view kSummary = "Elastic solid, linear in logarithmic strain; stiff bodies, metals.";
   static constexpr std::string_view kSource = "Hencky 1928; Klar et al. 2016";
+  static constexpr std::string_view kFormula =
+      "psi = mu sum (ln sigma_i)^2 + lambda/2 (ln J)^2; tau_i = 2 mu ln sigma_i + lambda ln J";
   static constexpr std::array kParameters = {kYoungsModulus, kPoissonRatio};
   static constexpr std::array<HistoryColumn, 0> kHistory = {};
   static constexpr double kMinimumJ = 0;

@@ -31,6 +31,8 @@ struct HerschelBulkley {
   static constexpr std::string_view kName = "herschel_bulkley";
   static constexpr std::string_view kSummary = "Paste, cream, foam: a soft solid that flows above its yield stress.";
   static constexpr std::string_view kSource = "Yue et al. 2015; Nagasawa et al. 2019; Herschel and Bulkley 1926";
+  static constexpr std::string_view kFormula =
+      "tau of hencky; shear stress = shear_yield_stress + consistency (shear rate)^flow_index while it flows";
   static constexpr std::array kParameters = {
       kYoungsModulus,
       kPoissonRatio,

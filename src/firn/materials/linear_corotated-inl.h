@@ -27,6 +27,8 @@ struct LinearCorotated {
   static constexpr std::string_view kSummary =
       "Hooke's law in a frame that turns with the material; cheap soft bodies.";
   static constexpr std::string_view kSource = "Mueller and Gross 2004; Stomakhin et al. 2012";
+  static constexpr std::string_view kFormula =
+      "psi = mu |S - I|^2 + lambda/2 tr(S - I)^2; tau_i = sigma_i (2 mu (sigma_i - 1) + lambda sum (sigma_k - 1))";
   static constexpr std::array kParameters = {kYoungsModulus, kPoissonRatio};
   static constexpr std::array<HistoryColumn, 0> kHistory = {};
   static constexpr double kMinimumJ = -std::numeric_limits<double>::infinity();

@@ -1,7 +1,7 @@
 // What every constitutive model shares. A model is a template over T (a number or Lanes) in a file of its own:
 //
 //   template <class T> struct Name {
-//     static constexpr std::string_view kName, kSummary, kSource;
+//     static constexpr std::string_view kName, kSummary, kSource, kFormula;
 //     static constexpr std::array kParameters = {...};           Parameter, in the order of ModelParameters::values
 //     static constexpr std::array<HistoryColumn, n> kHistory;    per-particle memory besides the strain
 //     static constexpr double kMinimumJ;                         states with J at or below it are reported as failed

@@ -14,6 +14,7 @@ struct ModelInfo {
   std::string_view name;     ///< scene value, for example "neo_hookean"
   std::string_view summary;  ///< one sentence
   std::string_view source;   ///< paper and equation
+  std::string_view formula;  ///< what it computes, in one or two equations separated by "; "
   std::span<const Parameter> parameters;
   std::span<const HistoryColumn> history;
   StrainKind strain;  ///< strain_entries(strain, dim): the strain columns and their initial values
@@ -38,11 +39,13 @@ struct Preset {
   struct Value {
     std::string_view parameter;
     double value;
+    std::string_view source;  ///< paper or table; or "chosen: " and what the number has to bring about
   };
   std::string_view name;  ///< for example "snow"
   std::string_view model;
-  std::string_view summary;  ///< one sentence with the source of the numbers
+  std::string_view summary;  ///< one sentence
   double density;            ///< kg/m^3
+  std::string_view density_source;
   std::span<const Value> values;
 };
 

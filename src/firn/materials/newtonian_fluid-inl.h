@@ -24,6 +24,8 @@ struct NewtonianFluid {
   static constexpr std::string_view kName = "newtonian_fluid";
   static constexpr std::string_view kSummary = "Weakly compressible liquid with constant viscosity: water, oil, honey.";
   static constexpr std::string_view kSource = "Becker and Teschner 2007; Tampubolon et al. 2017";
+  static constexpr std::string_view kFormula =
+      "p = bulk_modulus / gamma (J^-gamma - 1); tau = -J p I + 2 viscosity J dev(D)";
   static constexpr std::array kParameters = {kBulkModulus, kTaitExponent, kViscosity, kTensileStrength};
   static constexpr std::array<HistoryColumn, 0> kHistory = {};
   static constexpr double kMinimumJ = 0;

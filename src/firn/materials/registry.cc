@@ -40,6 +40,7 @@ constexpr auto infos_of(ModelList<Models...>) {
       .name = Models<double>::kName,
       .summary = Models<double>::kSummary,
       .source = Models<double>::kSource,
+      .formula = Models<double>::kFormula,
       .parameters = Models<double>::kParameters,
       .history = Models<double>::kHistory,
       .strain = strain_kind<Models<double>>(),

@@ -12,7 +12,7 @@ namespace firn {
 namespace HWY_NAMESPACE {
 
 /// Metal and plasticine: Hencky elasticity, von Mises yield and linear isotropic hardening (Simo and Hughes 1998,
-/// box 3.1, in logarithmic strains as in Simo 1992).
+/// chapter 3, in logarithmic strains as in Simo 1992).
 ///
 ///   q = sqrt(3/2) |dev tau| = sqrt(6) mu |dev strain|  <=  yield_stress + H alpha      Pa
 ///
@@ -29,7 +29,8 @@ struct VonMises {
   static constexpr std::string_view kName = "von_mises";
   static constexpr std::string_view kSummary =
       "Metal or modelling clay: elastic up to a yield stress, then bends for good.";
-  static constexpr std::string_view kSource = "Simo 1992; Simo and Hughes 1998, box 3.1";
+  static constexpr std::string_view kSource = "Simo 1992; Simo and Hughes 1998, chapter 3";
+  static constexpr std::string_view kFormula = "tau of hencky; sqrt(3/2) |dev tau| <= yield_stress + H alpha";
   static constexpr std::array kParameters = {
       kYoungsModulus,
       kPoissonRatio,
