@@ -249,6 +249,66 @@ TEST_P(UpdateStressOnTarget, UnusableStatesAreReportedByTheirFirstIndex) {
   expect_failures_to_be_reported<double, 3>();
 }
 
+/// Smooth motion of one set of particles: its columns after some steps.
+template <class Real, int dim>
+Columns<Real, dim> moved(Columns<Real, dim> columns, const ModelInfo& info, int steps) {
+  const auto update = update_stress_function<Real, dim>(model_number(info.name));
+  for (int step = 0; step < steps; ++step) {
+    update(parameters_of(info), columns.pointers(), 0, columns.count, static_cast<Real>(1e-3));
+  }
+  return columns;
+}
+
+/// Undeformed particles, each with a velocity gradient of its own.
+template <class Real, int dim>
+Columns<Real, dim> at_rest(const ModelInfo& info) {
+  Columns<Real, dim> columns(40, info, 1);
+  Random random(9);
+  for (std::size_t p = 0; p < columns.count; ++p) {
+    for (std::size_t e = 0; e < dim * dim; ++e) {
+      columns.grad_v[e][p] = static_cast<Real>(random.uniform(-1, 1));
+      columns.strain[e][p] = e % (dim + 1) == 0 ? Real(1) : Real(0);
+    }
+    for (std::size_t h = 0; h < columns.history.size(); ++h) {
+      columns.history[h][p] = static_cast<Real>(info.history[h].initial_value);
+    }
+  }
+  return columns;
+}
+
+TEST_P(UpdateStressOnTarget, SinglePrecisionFollowsDouble) {
+  for_each_model([&](const ModelInfo& info, int model) {
+    const auto single = moved(at_rest<float, 3>(info), info, 100);
+    auto exact = moved(at_rest<double, 3>(info), info, 100);
+    const ModelParameters parameters = parameters_of(info);
+    const auto report = update_stress_function<double, 3>(model)(parameters, exact.pointers(), 0, exact.count, 0.0);
+    // A hundred roundings of the strain, times the stiffness.
+    const double tolerance = 3e-5 * report.wave_speed * report.wave_speed * parameters.density;
+    for (std::size_t s = 0; s < exact.stress.size(); ++s) {
+      for (std::size_t p = 0; p < exact.count; ++p) {
+        ASSERT_NEAR(single.stress[s][p], exact.stress[s][p], tolerance) << s << " " << p;
+      }
+    }
+  });
+}
+
+TEST_P(UpdateStressOnTarget, ColumnsAreAllThatAParticleRemembers) {
+  // Columns that are written and read back go on with the same bits.
+  for_each_model([&](const ModelInfo& info, int) {
+    const auto whole = moved(at_rest<float, 2>(info), info, 60);
+    const auto half = moved(at_rest<float, 2>(info), info, 30);
+    Columns<float, 2> restored(half.count, info, 5);
+    restored.grad_v = half.grad_v, restored.strain = half.strain, restored.history = half.history;
+    restored = moved(restored, info, 30);
+    for (const StrainEntry& entry : strain_entries(info.strain, 2)) {
+      const auto e = static_cast<std::size_t>(entry.entry);
+      EXPECT_EQ(whole.strain[e], restored.strain[e]);
+    }
+    EXPECT_EQ(whole.history, restored.history);
+    EXPECT_TRUE(std::equal(whole.stress[0].begin(), whole.stress[0].begin() + 40, restored.stress[0].begin()));
+  });
+}
+
 INSTANTIATE_TEST_SUITE_P(Targets, UpdateStressOnTarget, testing::ValuesIn(available_simd_targets()),
                          [](const auto& test) { return test.param; });
 

@@ -12,7 +12,7 @@ namespace firn {
 /// What is done to a single point of material.
 enum class PointPath {
   shear,     ///< simple shear, x sliding along y, at constant volume
-  uniaxial,  ///< stretched (or shortened) along x, with sides free of stress
+  uniaxial,  ///< stretched (or shortened) along x, with sides free of stress, or under the pressure
   triaxial,  ///< pressed all round first, then shortened along x while the sides keep their pressure
   cyclic,    ///< simple shear to and fro
 };

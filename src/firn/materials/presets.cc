@@ -13,10 +13,10 @@ constexpr std::string_view kTaylorBar =
     "Taylor bar benchmark of Simo 1992, after Wilkins and Guinan 1973, doi:10.1063/1.1662328";
 constexpr std::string_view kTaitOfWater = "Becker and Teschner 2007: 7 for water";
 constexpr std::string_view kWaterTable = "CRC Handbook of Chemistry and Physics, properties of water at 20 C";
-constexpr std::string_view kSound40 = "chosen: sound at 45 m/s keeps density within 1 % under 2 m of liquid";
+constexpr std::string_view kSlowSound = "chosen: sound at 45 m/s; density within 1 % under 2 m of liquid";
 constexpr std::string_view kHoldsTogether = "chosen: never opens by itself";
 constexpr std::string_view kNearlyIncompressible = "chosen: volume changes much less than shape";
-constexpr std::string_view kForgets = "chosen: grains in flight do not land with lost volume";
+constexpr std::string_view kForgets = "chosen: opened by more than 65 % it is spray, which lands as grains";
 constexpr std::string_view kSnowCap = "chosen: bounds the loss of time step to a factor of 2.8";
 constexpr std::string_view kFirmerThanItsYield = "chosen: yields at an elastic strain of a few per cent";
 
@@ -39,9 +39,9 @@ constexpr Preset::Value kWetSnow[] = {
 constexpr Preset::Value kPowderSnow[] = {
     {"youngs_modulus", 5e4, "chosen: a third of the stiffness of snow"},
     {"poisson_ratio", 0.2, kStomakhin},
-    {"critical_compression", 2e-2, "chosen: packs under a third of the pressure of snow"},
+    {"critical_compression", 2e-2, "chosen: packs under 0.4 of the pressure of snow"},
     {"critical_stretch", 1e-3, "chosen: bears less than a tenth of the tension of snow"},
-    {"hardening", 7, "chosen: softer than snow when packed by half"},
+    {"hardening", 7, "chosen: packed by a fifth it hardens by 4, snow by 7"},
     {"hardening_cap", 8, kSnowCap},
 };
 constexpr Preset::Value kJelly[] = {
@@ -56,14 +56,14 @@ constexpr Preset::Value kYogurt[] = {
     {"youngs_modulus", 3e3, kFirmerThanItsYield},
     {"poisson_ratio", 0.45, kNearlyIncompressible},
     {"shear_yield_stress", 60, "chosen: a cone of 2 cm stands, one of 5 cm sinks"},
-    {"consistency", 10, "chosen: stirred at 10/s it is thinner than honey"},
+    {"consistency", 10, "chosen: stirred at 20/s it is thinner than honey"},
     {"flow_index", 0.5, "chosen: thins when stirred"},
 };
 constexpr Preset::Value kWhippedCream[] = {
     {"youngs_modulus", 6e3, kFirmerThanItsYield},
     {"poisson_ratio", 0.4, kNearlyIncompressible},
     {"shear_yield_stress", 90, "chosen: a cone of 8 cm stands"},
-    {"consistency", 15, "chosen: stirred at 10/s it is thinner than honey"},
+    {"consistency", 15, "chosen: stirred at 20/s it is thinner than honey"},
     {"flow_index", 0.5, "chosen: thins when stirred"},
 };
 constexpr Preset::Value kToothpaste[] = {
@@ -77,14 +77,14 @@ constexpr Preset::Value kFoam[] = {
     {"youngs_modulus", 1.5e3, kFirmerThanItsYield},
     {"poisson_ratio", 0.3, "chosen: the bubbles are compressible"},
     {"shear_yield_stress", 40, "chosen: a cone of 15 cm stands"},
-    {"consistency", 20, "chosen: stirred at 10/s it is thinner than honey"},
+    {"consistency", 20, "chosen: stirred at 20/s it is thinner than honey"},
     {"flow_index", 0.4, "chosen: thins when stirred"},
 };
 constexpr Preset::Value kMud[] = {
     {"youngs_modulus", 2e4, kFirmerThanItsYield},
     {"poisson_ratio", 0.45, kNearlyIncompressible},
     {"shear_yield_stress", 100, "chosen: a layer of 3 cm rests on a slope of 10 degrees, one of 5 cm does not"},
-    {"consistency", 20, "chosen: a layer flows, and stops, within seconds"},
+    {"consistency", 20, "chosen: sheared at 1/s it bears a fifth more than its yield stress"},
     {"flow_index", 0.6, "chosen: thins when stirred"},
 };
 constexpr Preset::Value kLava[] = {
@@ -95,13 +95,13 @@ constexpr Preset::Value kLava[] = {
     {"flow_index", 1, "chosen: Bingham, the simplest law with a yield stress"},
 };
 constexpr Preset::Value kHoney[] = {
-    {"bulk_modulus", 2e6, kSound40},
+    {"bulk_modulus", 3e6, kSlowSound},
     {"tait_exponent", 7, kTaitOfWater},
-    {"viscosity", 10, "chosen: a sphere of 1 cm and twice its density sinks a few cm a second"},
+    {"viscosity", 10, "chosen: a ball of 2 cm and twice its density sinks 3 cm a second"},
     {"tensile_strength", 1e12, kHoldsTogether},
 };
 constexpr Preset::Value kWater[] = {
-    {"bulk_modulus", 2e6, kSound40},
+    {"bulk_modulus", 2e6, kSlowSound},
     {"tait_exponent", 7, kTaitOfWater},
     {"viscosity", 1.002e-3, kWaterTable},
     {"tensile_strength", 1e12, kHoldsTogether},
@@ -121,19 +121,19 @@ constexpr Preset::Value kWetSand[] = {
     {"dilation_limit", 0.5, kForgets},
 };
 constexpr Preset::Value kClay[] = {
-    {"youngs_modulus", 5e6, "chosen: dented by 1 % when it yields"},
+    {"youngs_modulus", 5e6, "chosen: squeezed by less than 1 % when it begins to pack"},
     {"poisson_ratio", 0.35, kNearlyIncompressible},
     {"friction_angle", 22, "chosen: less rough than sand"},
-    {"preconsolidation_pressure", 4e4, "chosen: a block of 1 m stands, a foot sinks in"},
+    {"preconsolidation_pressure", 4e4, "chosen: a block of 1 m stands, one of 10 m does not"},
     {"cohesion_ratio", 0.5, "chosen: torn off by half the pressure that dents it"},
-    {"packing_hardening", 1, "chosen: packs as much as it springs back"},
+    {"packing_hardening", 0.05, "chosen: sheared by 10 % it keeps three quarters of its strength"},
     {"dilation_limit", 0.5, kForgets},
 };
 constexpr Preset::Value kPlasticine[] = {
     {"youngs_modulus", 5e6, "chosen: yields at a strain of 1 %"},
     {"poisson_ratio", 0.4, kNearlyIncompressible},
     {"yield_stress", 5e4, "chosen: a column of 2 m stands, fingers leave dents"},
-    {"hardening_modulus", 2e4, "chosen: hardens by half when bent through and through"},
+    {"hardening_modulus", 2e4, "chosen: hardens by 40 % at a plastic strain of 1"},
 };
 constexpr Preset::Value kSteel[] = {
     {"youngs_modulus", 2.1e11, "EN 1993-1-1, section 3.2.6"},
