@@ -16,6 +16,7 @@ constexpr std::string_view kWaterTable = "CRC Handbook of Chemistry and Physics,
 constexpr std::string_view kSlowSound = "chosen: sound at 45 m/s; density within 1 % under 2 m of liquid";
 constexpr std::string_view kHoldsTogether = "chosen: never opens by itself";
 constexpr std::string_view kNearlyIncompressible = "chosen: volume changes much less than shape";
+constexpr std::string_view kHoldsItsVolume = "chosen: 10 cm of it are squeezed by their weight by less than 2 %";
 constexpr std::string_view kForgets = "chosen: opened by more than 65 % it is spray, which lands as grains";
 constexpr std::string_view kSnowCap = "chosen: bounds the loss of time step to a factor of 2.8";
 constexpr std::string_view kFirmerThanItsYield = "chosen: yields at an elastic strain of a few per cent";
@@ -54,42 +55,42 @@ constexpr Preset::Value kRubber[] = {
 };
 constexpr Preset::Value kYogurt[] = {
     {"youngs_modulus", 3e3, kFirmerThanItsYield},
-    {"poisson_ratio", 0.45, kNearlyIncompressible},
+    {"poisson_ratio", 0.495, kHoldsItsVolume},
     {"shear_yield_stress", 60, "chosen: a cone of 2 cm stands, one of 5 cm sinks"},
     {"consistency", 10, "chosen: stirred at 20/s it is thinner than honey"},
     {"flow_index", 0.5, "chosen: thins when stirred"},
 };
 constexpr Preset::Value kWhippedCream[] = {
     {"youngs_modulus", 6e3, kFirmerThanItsYield},
-    {"poisson_ratio", 0.4, kNearlyIncompressible},
+    {"poisson_ratio", 0.48, kHoldsItsVolume},
     {"shear_yield_stress", 90, "chosen: a cone of 8 cm stands"},
     {"consistency", 15, "chosen: stirred at 20/s it is thinner than honey"},
     {"flow_index", 0.5, "chosen: thins when stirred"},
 };
 constexpr Preset::Value kToothpaste[] = {
     {"youngs_modulus", 2e4, kFirmerThanItsYield},
-    {"poisson_ratio", 0.45, kNearlyIncompressible},
+    {"poisson_ratio", 0.49, kHoldsItsVolume},
     {"shear_yield_stress", 200, "chosen: a strand of 1 cm keeps its round shape"},
     {"consistency", 30, "chosen: pressed from a tube at 10/s by less than 500 Pa"},
     {"flow_index", 0.5, "chosen: thins when pressed"},
 };
 constexpr Preset::Value kFoam[] = {
     {"youngs_modulus", 1.5e3, kFirmerThanItsYield},
-    {"poisson_ratio", 0.3, "chosen: the bubbles are compressible"},
+    {"poisson_ratio", 0.45, kHoldsItsVolume},
     {"shear_yield_stress", 40, "chosen: a cone of 15 cm stands"},
     {"consistency", 20, "chosen: stirred at 20/s it is thinner than honey"},
     {"flow_index", 0.4, "chosen: thins when stirred"},
 };
 constexpr Preset::Value kMud[] = {
     {"youngs_modulus", 2e4, kFirmerThanItsYield},
-    {"poisson_ratio", 0.45, kNearlyIncompressible},
+    {"poisson_ratio", 0.49, kHoldsItsVolume},
     {"shear_yield_stress", 100, "chosen: a layer of 3 cm rests on a slope of 10 degrees, one of 5 cm does not"},
     {"consistency", 20, "chosen: sheared at 1/s it bears a fifth more than its yield stress"},
     {"flow_index", 0.6, "chosen: thins when stirred"},
 };
 constexpr Preset::Value kLava[] = {
     {"youngs_modulus", 2e5, kFirmerThanItsYield},
-    {"poisson_ratio", 0.45, kNearlyIncompressible},
+    {"poisson_ratio", 0.49, kHoldsItsVolume},
     {"shear_yield_stress", 2000, "chosen: the front of a flow on a slope of 10 degrees is half a metre thick"},
     {"consistency", 1000, "chosen: two orders of magnitude more viscous than honey"},
     {"flow_index", 1, "chosen: Bingham, the simplest law with a yield stress"},
