@@ -41,20 +41,26 @@ class Contract : public testing::Test {
   using Tested = typename T::Model;
   using Deformation = Matrix<kDim>;
 
-  Contract() { initial_history<Tested>(history); }
+  double energy(const Deformation& F) const {
+    const Element<Tested, kDim> element(F);
+    return model.energy(element.strain, element.history);
+  }
+  hw::Response<double, kDim> at(const Deformation& F) const { return of(model, F); }
+  static hw::Response<double, kDim> of(const Tested& tested, const Deformation& F) {
+    return Element<Tested, kDim>(F).update(tested, Deformation{}, 0);
+  }
 
-  double energy(const Deformation& F) const { return model.energy(F, history); }
-  hw::Response<double, kDim> at(const Deformation& F) const { return response<Tested, kDim>(model, F, history); }
-
-  /// d psi / dF by central differences.
+  /// d psi / dF by differences of fourth order: J^-7 of liquids needs it.
   Deformation energy_gradient(const Deformation& F) const {
-    constexpr double h = 1e-5;
+    constexpr double h = 1e-4;
     Deformation P;
     for (int e = 0; e < kDim * kDim; ++e) {
-      Deformation above = F, below = F;
-      above.e[e] += h;
-      below.e[e] -= h;
-      P.e[e] = (energy(above) - energy(below)) / (2 * h);
+      const auto at_distance = [&](double distance) {
+        Deformation moved = F;
+        moved.e[e] += distance;
+        return energy(moved);
+      };
+      P.e[e] = (8 * (at_distance(h) - at_distance(-h)) - (at_distance(2 * h) - at_distance(-2 * h))) / (12 * h);
     }
     return P;
   }
@@ -66,19 +72,19 @@ class Contract : public testing::Test {
     std::vector<double> errors;
     for (int n = 0; n < 2000; ++n) {
       const Deformation F = elastic_deformation<Tested, kDim>(random);
-      const Deformation tau = response<Tested, kDim>(stress_model, F, history).tau;
+      const Deformation tau = of(stress_model, F).tau;
       const Deformation expected = energy_gradient(F) * hw::transpose(F);
-      errors.push_back(distance(tau, expected) / std::max(size_of(expected), 0.01 * parameters.values[0]));
+      errors.push_back(distance(tau, expected) / std::max(size_of(expected), 0.01 * modulus));
     }
     std::sort(errors.begin(), errors.end());
     return errors;
   }
 
-  ModelParameters parameters = default_parameters<Tested>();
+  ModelParameters parameters = elastic_parameters<Tested>();
   Tested model = Tested(parameters);
-  double history[kMaxHistoryColumns];
-  double lambda = lame_lambda(parameters.values[0], parameters.values[1]);
-  double mu = lame_mu(parameters.values[0], parameters.values[1]);
+  double lambda = small_strain_moduli<Tested>(parameters).lambda;
+  double mu = small_strain_moduli<Tested>(parameters).mu;
+  double modulus = lambda + 2 * mu;  // of compressive waves
 };
 
 TYPED_TEST_SUITE(Contract, Cases<hw::AllModels>::Types, CaseNames);
@@ -92,6 +98,7 @@ TYPED_TEST(Contract, StressIsTheGradientOfTheEnergy) {
 }
 
 TYPED_TEST(Contract, SwappedLameParametersAreNoticed) {
+  if (this->mu == 0 || TypeParam::Model::kParameters[0].name != "youngs_modulus") return;
   // E and nu that exchange lambda and mu.
   const double l = this->mu, m = this->lambda;
   ModelParameters swapped = this->parameters;
@@ -104,16 +111,16 @@ TYPED_TEST(Contract, SwappedLameParametersAreNoticed) {
 TYPED_TEST(Contract, UndeformedMaterialIsFreeOfStressAndEnergy) {
   constexpr int dim = TypeParam::kDim;
   const auto I = hw::identity<double, dim>();
-  EXPECT_NEAR(this->energy(I), 0, 1e-14 * this->mu);
+  EXPECT_NEAR(this->energy(I), 0, 1e-14 * this->modulus);
   const auto response = this->at(I);
-  EXPECT_LE(size_of(response.tau), 1e-14 * this->mu);
-  EXPECT_LE(std::fabs(response.tau_zz), dim == 2 ? 1e-14 * this->mu : std::numeric_limits<double>::infinity());
+  EXPECT_LE(size_of(response.tau), 1e-14 * this->modulus);
+  EXPECT_LE(std::fabs(response.tau_zz), dim == 2 ? 1e-14 * this->modulus : std::numeric_limits<double>::infinity());
   EXPECT_NEAR(response.J, 1, 1e-15);
   Random random(2);
   for (int n = 0; n < 100; ++n) {
     const auto R = random_rotation<dim>(random);
-    EXPECT_NEAR(this->energy(R), 0, 1e-14 * this->mu);
-    EXPECT_LE(size_of(this->at(R).tau), 1e-13 * this->mu);
+    EXPECT_NEAR(this->energy(R), 0, 1e-14 * this->modulus);
+    EXPECT_LE(size_of(this->at(R).tau), 1e-13 * this->modulus);
   }
 }
 
@@ -124,8 +131,8 @@ TYPED_TEST(Contract, IsObjectiveAndSymmetric) {
     const auto F = elastic_deformation<typename TypeParam::Model, dim>(random);
     const auto Q = random_rotation<dim>(random);
     const auto turned = Q * F;
-    const double scale = std::max(size_of(this->at(F).tau), this->mu);
-    EXPECT_NEAR(this->energy(turned), this->energy(F), 1e-12 * std::max(this->energy(F), this->mu));
+    const double scale = std::max(size_of(this->at(F).tau), this->modulus);
+    EXPECT_NEAR(this->energy(turned), this->energy(F), 1e-12 * std::max(this->energy(F), this->modulus));
     EXPECT_LE(distance(this->at(turned).tau, Q * this->at(F).tau * hw::transpose(Q)), 1e-12 * scale);
     EXPECT_LE(distance(this->at(F).tau, hw::transpose(this->at(F).tau)), 1e-12 * scale);
     // Isotropy: turning the undeformed material first changes nothing.
@@ -136,7 +143,7 @@ TYPED_TEST(Contract, IsObjectiveAndSymmetric) {
 TYPED_TEST(Contract, IsHookesLawForSmallStrains) {
   constexpr int dim = TypeParam::kDim;
   constexpr double h = 1e-6;
-  const double M = this->lambda + 2 * this->mu;
+  const double M = this->modulus;
   auto stretched = hw::identity<double, dim>(), squeezed = stretched, sheared = stretched, back = stretched;
   stretched(0, 0) += h;
   squeezed(0, 0) -= h;
@@ -146,7 +153,7 @@ TYPED_TEST(Contract, IsHookesLawForSmallStrains) {
   EXPECT_NEAR((up.tau(0, 0) - down.tau(0, 0)) / (2 * h) / M, 1, 1e-5);
   EXPECT_NEAR((up.tau(1, 1) - down.tau(1, 1)) / (2 * h) / this->lambda, 1, 1e-5);
   const double shear_modulus = (this->at(sheared).tau(0, 1) - this->at(back).tau(0, 1)) / (2 * h);
-  EXPECT_NEAR(shear_modulus / this->mu, 1, 1e-5);
+  EXPECT_NEAR(shear_modulus, this->mu, 1e-5 * (this->mu > 0 ? this->mu : M));
   if (dim == 2) {
     EXPECT_NEAR((up.tau_zz - down.tau_zz) / (2 * h) / this->lambda, 1, 1e-5);
   }
@@ -170,18 +177,20 @@ TYPED_TEST(Contract, UpdateFollowsTheVelocityGradient) {
   Random random(4);
   for (int n = 0; n < 100; ++n) {
     const auto F = elastic_deformation<Model, dim>(random);
-    // So little that no plastic model yields.
+    // So little that snow does not yield.
     const auto grad_v = random_matrix<dim>(random, 0.01);
     constexpr double dt = 0.01;
-    auto updated = F;
-    double memory[kMaxHistoryColumns];
-    std::copy_n(this->history, kMaxHistoryColumns, memory);
-    const auto response = this->model.update(updated, memory, grad_v, dt);
-    const auto expected = F + dt * (grad_v * F);
-    EXPECT_LE(distance(updated, expected), 1e-15 * size_of(expected));
-    EXPECT_LE(distance(response.tau, this->at(expected).tau), 1e-12 * this->mu);
-    EXPECT_NEAR(response.J, hw::determinant(updated), 1e-13);
-    EXPECT_TRUE(std::equal(memory, memory + kMaxHistoryColumns, this->history));
+    Element<Model, dim> updated(F);
+    const Element<Model, dim> expected(F + dt * (grad_v * F));
+    const auto response = updated.update(this->model, grad_v, dt);
+    // Liquids follow the divergence alone, to first order in dt.
+    const double tolerance = hw::strain_kind<Model>() == StrainKind::deformation_gradient ? 1e-14 : 1e-7;
+    for (const StrainEntry& e : strain_entries(hw::strain_kind<Model>(), dim)) {
+      EXPECT_NEAR(updated.strain.e[e.entry], expected.strain.e[e.entry], tolerance);
+    }
+    EXPECT_LE(distance(response.tau, this->at(F + dt * (grad_v * F)).tau), 100 * tolerance * this->modulus);
+    EXPECT_NEAR(response.J, hw::determinant(F + dt * (grad_v * F)), 10 * tolerance);
+    for (int h = 0; h < kMaxHistoryColumns; ++h) EXPECT_NEAR(updated.history[h], expected.history[h], tolerance);
   }
 }
 
@@ -190,15 +199,39 @@ TYPED_TEST(Contract, PlaneStrainIsASliceOfThreeDimensions) {
   Random random(5);
   for (int n = 0; n < 100; ++n) {
     const auto F = elastic_deformation<Model, 2>(random);
-    const Matrix<3> F3 = {{F.e[0], F.e[1], 0, F.e[2], F.e[3], 0, 0, 0, 1}};
-    const auto plane = response<Model, 2>(this->model, F, this->history);
-    const auto space = response<Model, 3>(this->model, F3, this->history);
-    const double scale = std::max(size_of(space.tau), this->mu);
+    const Element<Model, 2> flat(F);
+    const Element<Model, 3> solid(Matrix<3>{{F.e[0], F.e[1], 0, F.e[2], F.e[3], 0, 0, 0, 1}});
+    const auto plane = Element(flat).update(this->model, {}, 0);
+    const auto space = Element(solid).update(this->model, {}, 0);
+    const double scale = std::max(size_of(space.tau), this->modulus);
     for (int i = 0; i < 2; ++i) {
       for (int j = 0; j < 2; ++j) EXPECT_NEAR(plane.tau(i, j), space.tau(i, j), 1e-12 * scale);
     }
     EXPECT_NEAR(plane.tau_zz, space.tau(2, 2), 1e-12 * scale);
-    EXPECT_NEAR(this->model.energy(F, this->history), this->model.energy(F3, this->history), 1e-12 * scale);
+    EXPECT_NEAR(this->model.energy(flat.strain, flat.history), this->model.energy(solid.strain, solid.history),
+                1e-12 * scale);
+  }
+}
+
+TYPED_TEST(Contract, UnusedEntriesOfTheStrainAreNeitherReadNorWritten) {
+  constexpr int dim = TypeParam::kDim;
+  using Model = typename TypeParam::Model;
+  Random random(7);
+  const auto F = elastic_deformation<Model, dim>(random);
+  const auto grad_v = random_matrix<dim>(random, 0.01);
+  Element<Model, dim> clean(F), spoiled(F);
+  const auto entries = strain_entries(hw::strain_kind<Model>(), dim);
+  const auto used = [&](int e) { return std::ranges::any_of(entries, [e](auto& entry) { return entry.entry == e; }); };
+  for (int e = 0; e < dim * dim; ++e) {
+    if (!used(e)) spoiled.strain.e[e] = std::nan("");
+  }
+  EXPECT_EQ(this->model.energy(clean.strain, clean.history), this->model.energy(spoiled.strain, spoiled.history));
+  const auto expected = clean.update(this->model, grad_v, 0.01), response = spoiled.update(this->model, grad_v, 0.01);
+  EXPECT_TRUE(std::equal(response.tau.e, response.tau.e + dim * dim, expected.tau.e));
+  for (int e = 0; e < dim * dim; ++e) {
+    if (used(e)) {
+      EXPECT_EQ(clean.strain.e[e], spoiled.strain.e[e]);
+    }
   }
 }
 
@@ -209,15 +242,16 @@ TYPED_TEST(Contract, WaveModulusBoundsTheWavesOfDeformedMaterial) {
   for (int n = 0; n < 500; ++n) {
     // The moderate deformations that a time step has to survive.
     Matrix<dim> F = elastic_deformation<Model, dim>(random);
-    if (!is_plastic<Model>()) F = hw::identity<double, dim>() + random_matrix<dim>(random, 0.2);
+    if (Model::kName != "snow") F = hw::identity<double, dim>() + random_matrix<dim>(random, 0.2);
+    if (!(hw::determinant(F) > 0.5)) continue;
     // Longitudinal waves along axis 0: rho_0 c^2 = d tau_00 / d L_00 - tau_00, L the velocity gradient.
     constexpr double h = 1e-6;
     Matrix<dim> grad = {};
     grad(0, 0) = 1;
     const auto above = this->at(F + h * (grad * F)).tau, below = this->at(F - h * (grad * F)).tau;
-    const double modulus = (above(0, 0) - below(0, 0)) / (2 * h) - this->at(F).tau(0, 0);
+    const double measured = (above(0, 0) - below(0, 0)) / (2 * h) - this->at(F).tau(0, 0);
     // An estimate is enough, 14 % in speed: the time step keeps a factor of 1.5 or more from its stability limit.
-    EXPECT_GE(this->at(F).wave_modulus * 1.3, modulus);
+    EXPECT_GE(this->at(F).wave_modulus * 1.3, measured);
   }
 }
 
@@ -226,7 +260,7 @@ TYPED_TEST(Contract, NearlyVanishedMaterialStaysOnRecord) {
   const double J = 1e-12;
   const auto F = std::pow(J, 1.0 / dim) * hw::identity<double, dim>();
   EXPECT_TRUE(std::isfinite(this->energy(F)));
-  EXPECT_GT(this->energy(F), 0.1 * this->mu);
+  EXPECT_GT(this->energy(F), 0.1 * this->modulus);
   for (const double tau : this->at(F).tau.e) EXPECT_TRUE(std::isfinite(tau));
 }
 

@@ -30,6 +30,24 @@ TEST(Parameters, RangesContainTheirDefaultAndRefuseWhatLiesOutside) {
   }
 }
 
+TEST(Parameters, OfOneNameAreOneParameter) {
+  // A scene key has one range, one default and one meaning, whichever model it belongs to.
+  for (const ModelInfo& a : all_models()) {
+    for (const ModelInfo& b : all_models()) {
+      for (const Parameter& p : a.parameters) {
+        for (const Parameter& q : b.parameters) {
+          if (p.name != q.name) continue;
+          EXPECT_EQ(p.unit, q.unit) << p.name;
+          EXPECT_EQ(p.help, q.help) << p.name;
+          EXPECT_EQ(p.default_value, q.default_value) << p.name;
+          EXPECT_EQ(p.minimum, q.minimum) << p.name;
+          EXPECT_EQ(p.maximum, q.maximum) << p.name;
+        }
+      }
+    }
+  }
+}
+
 TEST(Models, AreNamedOnceAndFoundByName) {
   std::set<std::string_view> names;
   for (const ModelInfo& info : all_models()) {

@@ -38,6 +38,29 @@ TEST(Stability, DefaultTimeStepForTenThousandSteps) {
   expect_stable(kFlip, kDefault, 10000);
 }
 
+/// Viscous stress is explicit diffusion, whose limit no elastic wave knows.
+TEST(Stability, ViscousLimitBindsForThickLiquids) {
+  for (const double viscosity : {1e-3, 1e4}) {
+    World<double, 3> world(0.01, {}, {});
+    const int model = model_number("newtonian_fluid");
+    ModelParameters parameters = {{}, 1000};
+    for (const Parameter& p : all_models()[static_cast<std::size_t>(model)].parameters) {
+      parameters.values.push_back(p.name == "viscosity" ? viscosity : p.default_value);
+    }
+    world.add_material("liquid", model, parameters);
+    add_particles(world, 0, lattice<3>({0, 0, 0}, {4, 4, 4}, 2, 0.01), 1e-6 / 8);
+    ASSERT_FALSE(prepare(world).failure);
+    const TimeStep step = choose_time_step(world, {});
+    if (viscosity < 1) {
+      EXPECT_EQ(step.limit, "elastic_wave");
+    } else {
+      EXPECT_EQ(step.limit, "viscous");
+      EXPECT_EQ(step.material, 0);
+      EXPECT_NEAR(step.dt, 0.4 * 1e-4 / (6 * viscosity / 1000), 1e-6 * step.dt);
+    }
+  }
+}
+
 /// Every scheme with the default time step, with noise on all axes.
 TEST(Stability, DefaultTimeStepOfEveryScheme) {
   constexpr double kDefault = TimeStepLimits{}.elastic_cfl;

@@ -46,6 +46,8 @@ void add_commands(CLI::App& program) {
   add_render(program);
   add_sample(program);
   add_explain(program);
+  add_materials(program);
+  add_point(program);
   add_doctor(program);
   add_bench(program);
 }

@@ -20,6 +20,8 @@ void add_view(CLI::App& program);
 void add_render(CLI::App& program);
 void add_explain(CLI::App& program);
 void add_sample(CLI::App& program);
+void add_materials(CLI::App& program);
+void add_point(CLI::App& program);
 void add_doctor(CLI::App& program);
 void add_bench(CLI::App& program);
 

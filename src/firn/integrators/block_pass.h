@@ -18,6 +18,7 @@ namespace firn {
 struct BlockReport {
   double max_speed = 0;                           ///< m/s
   double wave_speed = 0;                          ///< m/s
+  double kinematic_viscosity = 0;                 ///< m^2/s
   std::unique_ptr<ParticleFailure> failure = {};  ///< the block's first
 
   /// Notes the failure of particle p of these columns, unless there is one already.
@@ -30,14 +31,18 @@ struct BlockReport {
 template <class Real, int dim>
 void combine(MaterialSet<Real, dim>& material, std::vector<BlockReport>& blocks, bool speeds, bool waves,
              StepReport& report) {
-  double max_speed = 0, wave_speed = 0;
+  double max_speed = 0, wave_speed = 0, viscosity = 0;
   for (BlockReport& block : blocks) {
     max_speed = std::max(max_speed, block.max_speed);
     wave_speed = std::max(wave_speed, block.wave_speed);
+    viscosity = std::max(viscosity, block.kinematic_viscosity);
     if (block.failure && !report.failure) report.failure = *block.failure;
   }
   if (speeds) material.max_speed = max_speed;
-  if (waves) material.wave_speed = wave_speed;
+  if (waves) {
+    material.wave_speed = wave_speed;
+    material.kinematic_viscosity = viscosity;
+  }
 }
 
 template <class Real, int dim>

@@ -79,6 +79,7 @@ class Pass {
             std::uint32_t first, const Index<dim>& origin, BlockReport& report) const {
     report.max_speed = std::max(report.max_speed, gathered.max_speed);
     report.wave_speed = std::max(report.wave_speed, updated.wave_speed);
+    report.kinematic_viscosity = std::max(report.kinematic_viscosity, updated.kinematic_viscosity);
     if (gathered.failed != GatherReport::kNone) {
       report.template note_failure<Real, dim>(world_, m_, columns, gathered.failed - first, origin, kMotionFailed);
     } else if (updated.failed != StressReport::kNone) {

@@ -104,6 +104,7 @@ void update_stress(World<Real, dim>& world, double dt, StepReport& report) {
             update(material.parameters, material_columns<Real, dim>(columns, particles.history_count()), 0, count,
                    static_cast<Real>(dt));
         reports[b].wave_speed = std::max(reports[b].wave_speed, updated.wave_speed);
+        reports[b].kinematic_viscosity = std::max(reports[b].kinematic_viscosity, updated.kinematic_viscosity);
         if (updated.failed != StressReport::kNone) {
           reports[b].template note_failure<Real, dim>(world, m, columns, static_cast<std::uint32_t>(updated.failed),
                                                       block_origin<dim>(particles.block_key(b)), kStrainFailed);

@@ -112,7 +112,7 @@ void update_stress(World<Real, dim>& world, std::size_t m, double dt, StepReport
   auto& particles = material.particles;
   const Model<double> model(material.parameters);
   const Field gradient = particles.has(Field::grad_v) ? Field::grad_v : Field::affine;
-  double wave_modulus = 0;
+  double wave_modulus = 0, viscosity = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
     HWY_NAMESPACE::Mat<double, dim> F, grad_v;
     for (int e = 0; e < dim * dim; ++e) {
@@ -142,11 +142,13 @@ void update_stress(World<Real, dim>& world, std::size_t m, double dt, StepReport
     }
     if (sound) {
       wave_modulus = std::max(wave_modulus, response.wave_modulus);
+      if constexpr (HWY_NAMESPACE::is_viscous<Model<double>>()) viscosity = std::max(viscosity, response.viscosity);
     } else {
       note_failure(report, world, m, p, "its strain is not finite or turned inside out");
     }
   }
   material.wave_speed = std::sqrt(wave_modulus / material.parameters.density);
+  material.kinematic_viscosity = viscosity / material.parameters.density;
 }
 
 template <class Real, int dim, template <class> class... Models>

@@ -20,6 +20,8 @@ TimeStep choose_time_step(const World<Real, dim>& world, const TimeStepLimits& l
   for (std::size_t m = 0; m < world.materials.size(); ++m) {
     const auto& material = world.materials[m];
     lower_to(limits.elastic_cfl * dx / (material.wave_speed + world.max_speed), "elastic_wave", static_cast<int>(m));
+    // Momentum spreads over dx in dx^2 / (2 dim nu): the stability limit of explicit diffusion.
+    lower_to(limits.elastic_cfl * dx * dx / (2 * dim * material.kinematic_viscosity), "viscous", static_cast<int>(m));
   }
   lower_to(limits.particle_cfl * dx / world.max_speed, "particle_cfl", -1);
   lower_to(limits.particle_cfl * dx / world.max_collider_speed, "collider_speed", -1);

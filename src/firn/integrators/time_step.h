@@ -11,14 +11,15 @@ namespace firn {
 /// What bounds the time step. Every frame line names the binding one.
 struct TimeStepLimits {
   double particle_cfl = 0.5;  ///< cells that a particle may move in a step
-  double elastic_cfl = 0.4;   ///< cells that an elastic wave, carried by the fastest particle, may move in a step
+  double elastic_cfl = 0.4;   ///< cells that an elastic wave, carried by the fastest particle, may move in a step;
+                              ///< also the share of the limit for viscous stress
   double max_dt = std::numeric_limits<double>::infinity();  ///< s, the user's
 };
 
 /// The reason for a time step.
 struct TimeStep {
   double dt = 0;           ///< s
-  std::string_view limit;  ///< "particle_cfl", "elastic_wave", "collider_speed", "max_dt", "frame"
+  std::string_view limit;  ///< "particle_cfl", "elastic_wave", "viscous", "collider_speed", "max_dt", "frame"
   int material = -1;       ///< index into World::materials of the material that sets it; -1 for the other limits
 
   /// For example: elastic_wave of "snow".

@@ -34,8 +34,9 @@ struct MaterialSet {
   Particles<Real, dim> particles;
 
   // What time step control knows from the last step.
-  double max_speed = 0;   ///< m/s
-  double wave_speed = 0;  ///< m/s
+  double max_speed = 0;            ///< m/s
+  double wave_speed = 0;           ///< m/s
+  double kinematic_viscosity = 0;  ///< m^2/s
 
   /// Number of this material's block at each of the grid's particle blocks; -1 where it has no particles.
   std::vector<std::int32_t> block_at = {};

@@ -60,6 +60,8 @@ struct FixedCorotated {
   static constexpr std::string_view kSummary =
       "Elastic solid that recovers even from inversion; jelly and soft bodies.";
   static constexpr std::string_view kSource = "Stomakhin et al. 2012; Jiang et al. 2016, section 6.3";
+  static constexpr std::string_view kFormula =
+      "psi = mu |F - R|^2 + lambda/2 (J - 1)^2; tau = 2 mu (F - R) F^T + lambda (J - 1) J I";
   static constexpr std::array kParameters = {kYoungsModulus, kPoissonRatio};
   static constexpr std::array<HistoryColumn, 0> kHistory = {};
   static constexpr double kMinimumJ = -std::numeric_limits<double>::infinity();

@@ -2,6 +2,7 @@
 
 #include <firn/core/parameter.h>
 #include <firn/materials/history_column.h>
+#include <firn/materials/strain_kind.h>
 
 #include <span>
 #include <string_view>
@@ -13,9 +14,16 @@ struct ModelInfo {
   std::string_view name;     ///< scene value, for example "neo_hookean"
   std::string_view summary;  ///< one sentence
   std::string_view source;   ///< paper and equation
+  std::string_view formula;  ///< what it computes, in one or two equations separated by "; "
   std::span<const Parameter> parameters;
   std::span<const HistoryColumn> history;
+  StrainKind strain;  ///< strain_entries(strain, dim): the strain columns and their initial values
+  double minimum_J;   ///< a particle at or below it has failed; minus infinity if the model bears inversion
+  bool viscous;       ///< fills StressReport::kinematic_viscosity
 };
+
+/// The history columns of a model in dim dimensions: in three without the ones that plane strain needs.
+std::span<const HistoryColumn> history_columns(const ModelInfo& model, int dim);
 
 /// Initial mass density, kg/m^3: common to all models.
 extern const Parameter kDensity;
@@ -31,11 +39,13 @@ struct Preset {
   struct Value {
     std::string_view parameter;
     double value;
+    std::string_view source;  ///< paper or table; or "chosen: " and what the number has to bring about
   };
   std::string_view name;  ///< for example "snow"
   std::string_view model;
-  std::string_view summary;  ///< one sentence with the source of the numbers
+  std::string_view summary;  ///< one sentence
   double density;            ///< kg/m^3
+  std::string_view density_source;
   std::span<const Value> values;
 };
 

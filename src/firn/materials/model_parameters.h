@@ -46,4 +46,9 @@ constexpr double lame_mu(double youngs_modulus, double poisson_ratio) {
   return youngs_modulus / (2 * (1 + poisson_ratio));
 }
 
+/// Bulk modulus, Pa.
+constexpr double bulk_modulus(double youngs_modulus, double poisson_ratio) {
+  return youngs_modulus / (3 * (1 - 2 * poisson_ratio));
+}
+
 }  // namespace firn

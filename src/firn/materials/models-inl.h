@@ -8,9 +8,17 @@
 #define FIRN_MATERIALS_MODELS_INL_H_
 #endif
 
+#include <firn/materials/cam_clay-inl.h>
+#include <firn/materials/drucker_prager-inl.h>
 #include <firn/materials/fixed_corotated-inl.h>
+#include <firn/materials/hencky-inl.h>
+#include <firn/materials/herschel_bulkley-inl.h>
+#include <firn/materials/linear_corotated-inl.h>
 #include <firn/materials/neo_hookean-inl.h>
+#include <firn/materials/newtonian_fluid-inl.h>
+#include <firn/materials/oldroyd_b-inl.h>
 #include <firn/materials/snow-inl.h>
+#include <firn/materials/von_mises-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace firn {
@@ -21,7 +29,8 @@ struct ModelList {
   static constexpr int kCount = sizeof...(Models);
 };
 
-using AllModels = ModelList<FixedCorotated, NeoHookean, Snow>;
+using AllModels = ModelList<FixedCorotated, NeoHookean, Hencky, LinearCorotated, Snow, DruckerPrager, VonMises, CamClay,
+                            HerschelBulkley, OldroydB, NewtonianFluid>;
 
 }  // namespace HWY_NAMESPACE
 }  // namespace firn

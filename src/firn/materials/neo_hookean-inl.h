@@ -23,6 +23,8 @@ struct NeoHookean {
   static constexpr std::string_view kName = "neo_hookean";
   static constexpr std::string_view kSummary = "Rubber-like elastic solid that resists being squeezed to nothing.";
   static constexpr std::string_view kSource = "Jiang et al. 2016, section 6.1";
+  static constexpr std::string_view kFormula =
+      "psi = mu/2 (tr(F F^T) - dim) - mu ln J + lambda/2 (ln J)^2; tau = mu (F F^T - I) + lambda ln J I";
   static constexpr std::array kParameters = {kYoungsModulus, kPoissonRatio};
   static constexpr std::array<HistoryColumn, 0> kHistory = {};
   static constexpr double kMinimumJ = 0;

@@ -21,15 +21,31 @@ namespace {
 
 using namespace HWY_NAMESPACE;
 
+/// Columns that only plane strain needs come last, so that those of three dimensions are a leading part.
+template <class Model>
+constexpr bool plane_strain_columns_last() {
+  bool plane_strain = false;
+  for (const HistoryColumn& column : Model::kHistory) {
+    if (plane_strain && !column.plane_strain_only) return false;
+    plane_strain = column.plane_strain_only;
+  }
+  return true;
+}
+
 template <template <class> class... Models>
 constexpr auto infos_of(ModelList<Models...>) {
   static_assert(((Models<double>::kHistory.size() <= kMaxHistoryColumns) && ...));
+  static_assert((plane_strain_columns_last<Models<double>>() && ...));
   return std::array{ModelInfo{
       .name = Models<double>::kName,
       .summary = Models<double>::kSummary,
       .source = Models<double>::kSource,
+      .formula = Models<double>::kFormula,
       .parameters = Models<double>::kParameters,
       .history = Models<double>::kHistory,
+      .strain = strain_kind<Models<double>>(),
+      .minimum_J = Models<double>::kMinimumJ,
+      .viscous = is_viscous<Models<double>>(),
   }...};
 }
 
@@ -70,6 +86,12 @@ const ModelInfo* find_model(std::string_view name) {
     if (info.name == name) return &info;
   }
   return nullptr;
+}
+
+std::span<const HistoryColumn> history_columns(const ModelInfo& model, int dim) {
+  std::size_t count = model.history.size();
+  while (dim == 3 && count > 0 && model.history[count - 1].plane_strain_only) --count;
+  return model.history.first(count);
 }
 
 int model_number(std::string_view name) {

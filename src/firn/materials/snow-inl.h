@@ -24,6 +24,9 @@ struct Snow {
   static constexpr std::string_view kName = "snow";
   static constexpr std::string_view kSummary = "Snow that packs, hardens, tears and crumbles.";
   static constexpr std::string_view kSource = "Stomakhin et al. 2013, sections 5 and 7";
+  static constexpr std::string_view kFormula =
+      "tau of fixed_corotated with h mu and h lambda, h = min(exp(xi (1 - Jp)), cap); stretches of Fe stay in [1 - "
+      "theta_c, 1 + theta_s]";
   static constexpr std::array kParameters = {
       kYoungsModulus,
       kPoissonRatio,

@@ -18,29 +18,56 @@ constexpr int stress_index(int i, int j) {
   return dim == 3 ? 2 + i + j : 3;  // xy 3, xz 4, yz 5; xy 3 in 2D
 }
 
+/// History columns of the model in dim dimensions.
+template <class Model, int dim>
+constexpr int history_count() {
+  int count = 0;
+  for (const HistoryColumn& column : Model::kHistory) count += dim == 2 || !column.plane_strain_only ? 1 : 0;
+  return count;
+}
+
+/// Largest of the lanes and of zero.
+template <class Real>
+double largest_of(Lanes<Real> lanes) {
+  HWY_ALIGN Real values[Lanes<Real>::kCount];
+  store_lanes(lanes, values, Lanes<Real>::kCount);
+  Real largest = 0;
+  for (const Real value : values) largest = value > largest ? value : largest;
+  return static_cast<double>(largest);
+}
+
+/// First lane of the mask.
+template <class Real>
+std::size_t first_of(LaneMask<Real> mask) {
+  HWY_ALIGN Real flags[Lanes<Real>::kCount];
+  store_lanes(select(mask, Lanes<Real>(Real(1)), Lanes<Real>(Real(0))), flags, Lanes<Real>::kCount);
+  std::size_t lane = 0;
+  while (lane + 1 < Lanes<Real>::kCount && flags[lane] == Real(0)) ++lane;
+  return lane;
+}
+
 template <template <class> class Model, class Real, int dim>
 StressReport update_particles(const ModelParameters& parameters, const MaterialColumns<Real, dim>& columns,
                               std::size_t begin, std::size_t end, Real dt) {
   using L = Lanes<Real>;
   const Model<L> model(parameters);
-  constexpr int kHistoryCount = static_cast<int>(Model<L>::kHistory.size());
+  constexpr int kHistoryCount = history_count<Model<L>, dim>();
+  constexpr std::span<const StrainEntry> kEntries = strain_entries(strain_kind<Model<L>>(), dim);
   constexpr Real kLargest = std::numeric_limits<Real>::max();
   const L minimum_J = L(static_cast<Real>(Model<L>::kMinimumJ < -kLargest ? -kLargest : Model<L>::kMinimumJ));
-  L wave_modulus = L(Real(0));
+  L wave_modulus = L(Real(0)), viscosity = L(Real(0));
   StressReport report;
   for (std::size_t p = begin; p < end; p += L::kCount) {
     const std::size_t count = end - p < L::kCount ? end - p : L::kCount;
-    Mat<L, dim> grad_v, F;
-    for (int e = 0; e < dim * dim; ++e) {
-      grad_v.e[e] = load_lanes(columns.grad_v[e] + p);
-      F.e[e] = load_lanes(columns.strain[e] + p);
-    }
+    Mat<L, dim> grad_v, F = identity<L, dim>();
+    for (int e = 0; e < dim * dim; ++e) grad_v.e[e] = load_lanes(columns.grad_v[e] + p);
+    for (const StrainEntry& e : kEntries) F.e[e.entry] = load_lanes(columns.strain[e.entry] + p);
     L history[kHistoryCount + 1];
     for (int h = 0; h < kHistoryCount; ++h) history[h] = load_lanes(columns.history[h] + p);
 
     const Response<L, dim> response = model.update(F, history, grad_v, L(dt));
 
-    for (int e = 0; e < dim * dim; ++e) store_lanes(F.e[e], columns.strain[e] + p, count);
+    for (const StrainEntry& e : kEntries) store_lanes(F.e[e.entry], columns.strain[e.entry] + p, count);
     for (int h = 0; h < kHistoryCount; ++h) store_lanes(history[h], columns.history[h] + p, count);
     L magnitude = L(Real(0));
     for (int i = 0; i < dim; ++i) {
@@ -55,22 +82,15 @@ StressReport update_particles(const ModelParameters& parameters, const MaterialC
     const auto sound = response.J > minimum_J && magnitude <= L(kLargest);
     const auto used = first_lanes<Real>(count);
     if (HWY_UNLIKELY(any(used && !sound)) && report.failed == StressReport::kNone) {
-      HWY_ALIGN Real flags[L::kCount];
-      store_lanes(select(used && !sound, L(Real(1)), L(Real(0))), flags, L::kCount);
-      for (std::size_t l = 0; l < count; ++l) {
-        if (flags[l] != Real(0)) {
-          report.failed = p + l;
-          break;
-        }
-      }
+      report.failed = p + first_of(used && !sound);
     }
     wave_modulus = max(select(used && sound, response.wave_modulus, L(Real(0))), wave_modulus);
+    if constexpr (is_viscous<Model<L>>()) {
+      viscosity = max(select(used && sound, response.viscosity, L(Real(0))), viscosity);
+    }
   }
-  HWY_ALIGN Real moduli[L::kCount];
-  store_lanes(wave_modulus, moduli, L::kCount);
-  Real largest = 0;
-  for (const Real modulus : moduli) largest = modulus > largest ? modulus : largest;
-  report.wave_speed = std::sqrt(static_cast<double>(largest) / parameters.density);
+  report.wave_speed = std::sqrt(largest_of(wave_modulus) / parameters.density);
+  report.kinematic_viscosity = largest_of(viscosity) / parameters.density;
   return report;
 }
 

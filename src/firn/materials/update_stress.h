@@ -17,8 +17,8 @@ inline constexpr int kStressComponents = dim == 3 ? 6 : 4;
 template <class Real, int dim>
 struct MaterialColumns {
   const Real* grad_v[dim * dim];         ///< 1/s, row-major: row is the velocity's component
-  Real* strain[dim * dim];               ///< deformation gradient (elastic part, for plastic models), row-major
-  Real* history[kMaxHistoryColumns];     ///< as the model declares
+  Real* strain[dim * dim];               ///< row-major; null where strain_entries() of the model has no entry
+  Real* history[kMaxHistoryColumns];     ///< as history_columns() of the model
   Real* stress[kStressComponents<dim>];  ///< Kirchhoff, Pa
 };
 
@@ -26,11 +26,15 @@ struct StressReport {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   double wave_speed = 0;       ///< fastest elastic wave, m/s
   std::size_t failed = kNone;  ///< first particle whose state is not finite or inverted beyond what the model bears
+  /// Largest dynamic viscosity over density, m^2/s; 0 for models that are not viscous. Explicit steps need
+  /// dt <= factor dx^2 / kinematic_viscosity.
+  double kinematic_viscosity = 0;
 };
 
 /// Combines reports of consecutive ranges.
 inline StressReport merge(const StressReport& a, const StressReport& b) {
-  return {a.wave_speed > b.wave_speed ? a.wave_speed : b.wave_speed, a.failed < b.failed ? a.failed : b.failed};
+  return {a.wave_speed > b.wave_speed ? a.wave_speed : b.wave_speed, a.failed < b.failed ? a.failed : b.failed,
+          a.kinematic_viscosity > b.kinematic_viscosity ? a.kinematic_viscosity : b.kinematic_viscosity};
 }
 
 /// Moves particles [begin, end) forward by dt: strain update, return map, Kirchhoff stress. With dt = 0 it computes the
@@ -43,11 +47,13 @@ using UpdateStress = StressReport (*)(const ModelParameters&, const MaterialColu
 template <class Real, int dim>
 UpdateStress<Real, dim> update_stress_function(int model);
 
-/// Energy density psi, J/m^3 of undeformed volume, of model number `model`. F is row-major.
+/// Energy density psi, J/m^3 of undeformed volume, of model number `model`. F is the strain matrix, row-major; entries
+/// that the model does not store may be anything. The history has kMaxHistoryColumns values, zero where none is stored.
 template <int dim>
 double energy_density(int model, const ModelParameters&, const double* F, const double* history);
 
-/// Current over undeformed volume, from J = det F of the stored strain.
+/// Current over undeformed volume, from the determinant of the strain matrix, with the entries of the unit matrix where
+/// the model stores none.
 double volume_ratio(int model, const ModelParameters&, double J, const double* history);
 
 }  // namespace firn

@@ -13,6 +13,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -139,7 +140,7 @@ class SimulationOf final : public Simulation {
   /// What a frame can be taken back to.
   struct Kept {
     std::vector<Particles<Real, dim>> particles;
-    std::vector<std::pair<double, double>> speeds;
+    std::vector<std::array<double, 3>> speeds;  ///< largest, of waves, viscosity
     double t, max_speed, max_collider_speed;
     std::uint64_t steps;
     std::int64_t parked;
@@ -150,7 +151,7 @@ class SimulationOf final : public Simulation {
     kept_.emplace();
     for (const auto& material : world_->materials) {
       kept_->particles.push_back(material.particles);
-      kept_->speeds.emplace_back(material.max_speed, material.wave_speed);
+      kept_->speeds.push_back({material.max_speed, material.wave_speed, material.kinematic_viscosity});
     }
     kept_->t = world_->t;
     kept_->max_speed = world_->max_speed;
@@ -163,7 +164,9 @@ class SimulationOf final : public Simulation {
     for (std::size_t m = 0; m < world_->materials.size(); ++m) {
       auto& material = world_->materials[m];
       material.particles = kept_->particles[m];
-      std::tie(material.max_speed, material.wave_speed) = kept_->speeds[m];
+      material.max_speed = kept_->speeds[m][0];
+      material.wave_speed = kept_->speeds[m][1];
+      material.kinematic_viscosity = kept_->speeds[m][2];
     }
     world_->t = kept_->t;
     world_->max_speed = kept_->max_speed;
