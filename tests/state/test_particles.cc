@@ -121,16 +121,25 @@ TEST(SortByBlock, IsTheSameOnManyThreads) {
   }
 }
 
-TEST(SortByBlock, NewParticlesLieByCellThenId) {
+TEST(SortByBlock, NewParticlesLieAsTheyWereAppended) {
   Random random(5);
-  const auto particles = random_particles<float, 3>(100000, 5, random);
-  for (std::size_t p = 1; p < particles.size(); ++p) {
-    const std::uint64_t a = particles.cell(p - 1), b = particles.cell(p);
-    ASSERT_LE(block_of_cell<3>(a), block_of_cell<3>(b));
-    if (a == b) {
+  auto particles = random_particles<float, 3>(100000, 5, random);
+  for (std::size_t b = 0; b < particles.block_count(); ++b) {
+    for (std::size_t p = particles.first_of_block(b) + 1; p < particles.first_of_block(b) + particles.block_size(b);
+         ++p) {
       ASSERT_LT(particles.id()[p - 1], particles.id()[p]);
     }
   }
+  // So a state that is appended in the order in which it lies is restored to that order.
+  move_some(particles, 0.3, random);
+  particles.sort_by_block();
+  Particles<float, 3> restored({});
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    const Vec<double, 3> x = particles.position(p, 1, Kernel::quadratic);
+    restored.append({&x, 1}, 1, Kernel::quadratic, {}, 1, 1, particles.id()[p], 0);
+  }
+  restored.sort_by_block();
+  EXPECT_EQ(ids_of(restored), ids_of(particles));
 }
 
 TEST(SortByBlock, EverythingIntoOneCellLiesById) {

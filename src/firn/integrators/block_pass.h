@@ -14,6 +14,15 @@
 /// What the verbs on particles share when they work on one block.
 namespace firn {
 
+/// Where the columns of a pass lie: lowest cell of their block, which of its particles are on their way elsewhere, and
+/// the place of the first particle in the block.
+template <int dim>
+struct BlockPlace {
+  const Index<dim>& origin;
+  const std::vector<Leaver>& leavers;
+  std::uint32_t first;
+};
+
 /// What a pass over one block has to say; combined in the order of blocks.
 struct BlockReport {
   double max_speed = 0;                           ///< m/s
@@ -24,7 +33,7 @@ struct BlockReport {
   /// Notes the failure of particle p of these columns, unless there is one already.
   template <class Real, int dim>
   void note_failure(const World<Real, dim>& world, std::size_t material, const ParticleColumns<Real, dim>& columns,
-                    std::uint32_t p, const Index<dim>& origin, std::string_view cause);
+                    std::uint32_t p, const BlockPlace<dim>& where, std::string_view cause);
 };
 
 /// Puts the reports of all blocks into the material's speeds and the step's report.
@@ -46,9 +55,8 @@ void combine(MaterialSet<Real, dim>& material, std::vector<BlockReport>& blocks,
 }
 
 template <class Real, int dim>
-Vec<double, dim> position_in_block(const ParticleColumns<Real, dim>& columns, std::uint32_t p, const Index<dim>& origin,
-                                   double dx, Kernel kernel) {
-  const Index<dim> cell = cell_of_code<dim>(origin, columns.cell[p]);
+Vec<double, dim> position_in_cell(const ParticleColumns<Real, dim>& columns, std::uint32_t p, const Index<dim>& cell,
+                                  double dx, Kernel kernel) {
   Vec<double, dim> x;
   for (int d = 0; d < dim; ++d) {
     x[d] = dx * (static_cast<double>(cell[static_cast<std::size_t>(d)]) + cell_offset(kernel) +
@@ -58,15 +66,25 @@ Vec<double, dim> position_in_block(const ParticleColumns<Real, dim>& columns, st
 }
 
 template <class Real, int dim>
+Vec<double, dim> position_in_block(const ParticleColumns<Real, dim>& columns, std::uint32_t p, const Index<dim>& origin,
+                                   double dx, Kernel kernel) {
+  return position_in_cell<Real, dim>(columns, p, cell_of_code<dim>(origin, columns.cell[p]), dx, kernel);
+}
+
+template <class Real, int dim>
 void BlockReport::note_failure(const World<Real, dim>& world, std::size_t material,
-                               const ParticleColumns<Real, dim>& columns, std::uint32_t p, const Index<dim>& origin,
+                               const ParticleColumns<Real, dim>& columns, std::uint32_t p, const BlockPlace<dim>& where,
                                std::string_view cause) {
   if (failure) return;
   failure = std::make_unique<ParticleFailure>();
   failure->material = material;
   failure->id = columns.id[p];
   failure->cause = cause;
-  const auto x = position_in_block<Real, dim>(columns, p, origin, world.grid.dx(), world.grid.kernel());
+  Index<dim> cell = cell_of_code<dim>(where.origin, columns.cell[p]);
+  for (const Leaver& leaver : where.leavers) {
+    if (columns.cell[p] == kNoCell && leaver.place == where.first + p) cell = cell_of_key<dim>(leaver.cell);
+  }
+  const auto x = position_in_cell<Real, dim>(columns, p, cell, world.grid.dx(), world.grid.kernel());
   for (int d = 0; d < dim; ++d) {
     failure->position.push_back(x[d]);
     failure->velocity.push_back(static_cast<double>(columns.velocity[d][p]));

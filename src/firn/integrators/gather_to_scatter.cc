@@ -56,8 +56,8 @@ class Pass {
           update_(material_.parameters, material_columns<Real, dim>(columns, particles_.history_count()), 0, count,
                   static_cast<Real>(dt_));
       if (leavers.size() > left_before) particles_.send(own, left_before, passing);
-      note(columns, gathered, updated, first, nodes.origin(), report);
-      scatter_batch(columns, count, nodes.origin(), grid.tile(b));
+      note(columns, gathered, updated, {nodes.origin(), leavers, first}, report);
+      scatter_chunk(columns, count, nodes.origin(), grid.tile(b));
     }
     particles_.close_gaps_of_kept(own);
   }
@@ -70,25 +70,25 @@ class Pass {
     const Index<dim> origin = block_origin<dim>(particles_.block_key(b));
     while (arrivals.begin < arrivals.end) {
       const std::uint32_t first = particles_.block_size(b), count = particles_.receive(arrivals, passing);
-      scatter_batch(particles_.columns(b, first, passing), count, origin, tile);
+      scatter_chunk(particles_.columns(b, first, passing), count, origin, tile);
     }
   }
 
  private:
   void note(const ParticleColumns<Real, dim>& columns, const GatherReport& gathered, const StressReport& updated,
-            std::uint32_t first, const Index<dim>& origin, BlockReport& report) const {
+            const BlockPlace<dim>& where, BlockReport& report) const {
     report.max_speed = std::max(report.max_speed, gathered.max_speed);
     report.wave_speed = std::max(report.wave_speed, updated.wave_speed);
     report.kinematic_viscosity = std::max(report.kinematic_viscosity, updated.kinematic_viscosity);
     if (gathered.failed != GatherReport::kNone) {
-      report.template note_failure<Real, dim>(world_, m_, columns, gathered.failed - first, origin, kMotionFailed);
+      report.template note_failure<Real, dim>(world_, m_, columns, gathered.failed - where.first, where, kMotionFailed);
     } else if (updated.failed != StressReport::kNone) {
-      report.template note_failure<Real, dim>(world_, m_, columns, static_cast<std::uint32_t>(updated.failed), origin,
+      report.template note_failure<Real, dim>(world_, m_, columns, static_cast<std::uint32_t>(updated.failed), where,
                                               kStrainFailed);
     }
   }
 
-  void scatter_batch(const ParticleColumns<Real, dim>& columns, std::uint32_t count, const Index<dim>& origin,
+  void scatter_chunk(const ParticleColumns<Real, dim>& columns, std::uint32_t count, const Index<dim>& origin,
                      Real* tile) const {
     if (world_.body_force) evaluate_body_force<Real, dim>(world_, columns, count, origin, world_.t + dt_);
     for (int layer = 0; layer < world_.grid.layers(); ++layer) {

@@ -79,7 +79,8 @@ void gather(World<Real, dim>& world, double dt, StepReport& report) {
             gather_block(columns, count, nodes.task(world, dt, first), material.particles.leavers(own));
         block.max_speed = std::max(block.max_speed, gathered.max_speed);
         if (gathered.failed != GatherReport::kNone) {
-          block.template note_failure<Real, dim>(world, m, columns, gathered.failed - first, nodes.origin(),
+          block.template note_failure<Real, dim>(world, m, columns, gathered.failed - first,
+                                                 {nodes.origin(), material.particles.leavers(own), first},
                                                  kMotionFailed);
         }
       });
@@ -99,7 +100,8 @@ void update_stress(World<Real, dim>& world, double dt, StepReport& report) {
     const UpdateStress<Real, dim> update = update_stress_function<Real, dim>(material.model);
     std::vector<BlockReport> reports(particles.block_count());
     parallel_each(particles.block_count(), [&](std::size_t b) {
-      particles.for_each_chunk(b, [&](const auto& columns, std::uint32_t, std::uint32_t count) {
+      const Index<dim> origin = block_origin<dim>(particles.block_key(b));
+      particles.for_each_chunk(b, [&](const auto& columns, std::uint32_t first, std::uint32_t count) {
         const StressReport updated =
             update(material.parameters, material_columns<Real, dim>(columns, particles.history_count()), 0, count,
                    static_cast<Real>(dt));
@@ -107,7 +109,7 @@ void update_stress(World<Real, dim>& world, double dt, StepReport& report) {
         reports[b].kinematic_viscosity = std::max(reports[b].kinematic_viscosity, updated.kinematic_viscosity);
         if (updated.failed != StressReport::kNone) {
           reports[b].template note_failure<Real, dim>(world, m, columns, static_cast<std::uint32_t>(updated.failed),
-                                                      block_origin<dim>(particles.block_key(b)), kStrainFailed);
+                                                      {origin, particles.leavers(b), first}, kStrainFailed);
         }
       });
     });

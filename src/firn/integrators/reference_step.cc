@@ -185,6 +185,7 @@ StepReport reference_step(World<Real, dim>& world, double dt) {
   sort_by_block(world);
   world.t += dt;
   world.scattered_dt.reset();
+  world.drained = true;
   ++world.steps;
   return report;
 }

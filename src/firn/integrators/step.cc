@@ -1,3 +1,4 @@
+#include <firn/core/error.h>
 #include <firn/integrators/step.h>
 #include <firn/integrators/verbs.h>
 
@@ -9,10 +10,16 @@ namespace firn {
 template <class Real, int dim>
 StepReport step_explicit(World<Real, dim>& world, double dt, const NextTimeStep& next) {
   StepReport report;
-  if (world.scattered_dt != dt) scatter(world, dt);
+  if (world.scattered_dt != dt) {
+    if (!world.drained) {
+      throw Error(ErrorKind::usage, "a step after a fused one must have the time step that was promised to it");
+    }
+    scatter(world, dt);
+  }
   update_velocity(world, dt);
   const double next_dt = next();
-  if (next_dt > 0 && world.fused) {
+  world.drained = !(next_dt > 0 && world.fused);
+  if (!world.drained) {
     gather_to_scatter(world, dt, next_dt, report);
     world.t += dt;
   } else {
@@ -36,9 +43,13 @@ template <class Real, int dim>
 StepReport prepare(World<Real, dim>& world) {
   StepReport report;
   world.scattered_dt.reset();
-  world.max_speed = 0;
+  world.drained = true;
+  world.max_speed = world.max_collider_speed = 0;
   for (auto& material : world.materials) {
     const auto& particles = material.particles;
+    if (world.body_force && !particles.has(Field::acceleration)) {
+      throw Error(ErrorKind::usage, "set body_force before adding materials");
+    }
     double square = 0;
     for (std::size_t p = 0; p < particles.size(); ++p) {
       double s = 0;

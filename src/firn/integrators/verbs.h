@@ -27,9 +27,9 @@ void update_stress(World<Real, dim>& world, double dt, StepReport& report);
 template <class Real, int dim>
 void sort_by_block(World<Real, dim>& world);
 
-/// gather, update_stress, sort_by_block and the scatter of the next step, batch by batch while the particles are in
+/// gather, update_stress, sort_by_block and the scatter of the next step, chunk by chunk while the particles are in
 /// cache: position, strain and history are read and written once a step, everything else stays in cache. The same bits
-/// as one after the other, but velocity, C_p and stress are not stored.
+/// as one after the other, but velocity (except with FLIP), C_p and stress are not stored.
 template <class Real, int dim>
 void gather_to_scatter(World<Real, dim>& world, double dt, double next_dt, StepReport& report);
 

@@ -11,7 +11,7 @@ MaterialSet<Real, dim>& World<Real, dim>::add_material(std::string name, int mod
   options.keeps_velocity = transfer.flip > 0;
   options.separate_grad_v = !affine_is_gradient(transfer.kernel, transfer.form);
   options.acceleration = static_cast<bool>(body_force);
-  for (const HistoryColumn& h : all_models()[static_cast<std::size_t>(model)].history) {
+  for (const HistoryColumn& h : history_columns(all_models()[static_cast<std::size_t>(model)], dim)) {
     options.history.push_back({std::string(h.name), std::string(h.unit), std::string(h.help), h.initial_value});
   }
   materials.push_back({std::move(name), model, parameters, Particles<Real, dim>(options)});

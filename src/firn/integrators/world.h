@@ -34,7 +34,9 @@ struct MaterialSet {
   Particles<Real, dim> particles;
 
   // What time step control knows from the last step.
-  double max_speed = 0;            ///< m/s
+  /// The grid's bound on the speed of particles after the last step, m/s. A collider that catches particles between
+  /// nodes may carry them faster.
+  double max_speed = 0;
   double wave_speed = 0;           ///< m/s
   double kinematic_viscosity = 0;  ///< m^2/s
 
@@ -42,7 +44,8 @@ struct MaterialSet {
   std::vector<std::int32_t> block_at = {};
 };
 
-/// Acceleration at world position x of the particle with this id at time t, m/s^2.
+/// Acceleration at world position x of the particle with this id at time t, m/s^2. Called from several threads; must
+/// not start parallel work of its own.
 template <int dim>
 using BodyForce = std::function<Vec<double, dim>(const Vec<double, dim>& x, std::uint32_t id, double t)>;
 
@@ -59,7 +62,7 @@ struct World {
   std::vector<MaterialSet<Real, dim>> materials;
   std::vector<Collider<dim>> colliders;
   Vec<double, dim> gravity = {};  ///< m/s^2
-  BodyForce<dim> body_force;      ///< may be empty; set it before particles are added
+  BodyForce<dim> body_force;      ///< may be empty; set it before materials are added
   double t = 0;                   ///< s
   std::uint64_t steps = 0;
   double max_collider_speed = 0;  ///< at nodes inside colliders in the last step, m/s
@@ -68,6 +71,8 @@ struct World {
   bool fused = true;
   /// The time step that the tiles hold the particles' contributions for, if they hold them.
   std::optional<double> scattered_dt;
+  /// Whether all fields of all particles are stored.
+  bool drained = true;
   VerbTimes verb_times = {};
 
   /// Adds a material without particles. @param model place in all_models()

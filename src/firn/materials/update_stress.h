@@ -31,12 +31,6 @@ struct StressReport {
   double kinematic_viscosity = 0;
 };
 
-/// Combines reports of consecutive ranges.
-inline StressReport merge(const StressReport& a, const StressReport& b) {
-  return {a.wave_speed > b.wave_speed ? a.wave_speed : b.wave_speed, a.failed < b.failed ? a.failed : b.failed,
-          a.kinematic_viscosity > b.kinematic_viscosity ? a.kinematic_viscosity : b.kinematic_viscosity};
-}
-
 /// Moves particles [begin, end) forward by dt: strain update, return map, Kirchhoff stress. With dt = 0 it computes the
 /// stress of the present strain.
 template <class Real, int dim>

@@ -172,7 +172,8 @@ class SimulationOf final : public Simulation {
     world_->max_speed = kept_->max_speed;
     world_->max_collider_speed = kept_->max_collider_speed;
     world_->scattered_dt.reset();
-    activate_blocks(*world_);
+    world_->drained = true;
+    arena_.execute([&] { activate_blocks(*world_); });
     world_->steps = kept_->steps;
     guard_.restore(kept_->parked);
   }
@@ -190,7 +191,7 @@ class SimulationOf final : public Simulation {
     std::optional<ParticleFailure> failure;
     arena_.execute([&] { failure = try_steps(frame_time(frame_ + 1)); });
     if (failure) return failure;
-    guard_.park_far(*world_);
+    arena_.execute([&] { guard_.park_far(*world_); });
     ++frame_;
     report_.frame = frame_;
     report_.time = world_->t;
@@ -212,6 +213,7 @@ class SimulationOf final : public Simulation {
         drained = remaining < 1e-9 * taken.dt || guard_.may_park(*world_);
         if (drained) return 0.0;
         next = choose_time_step(*world_, limits_, remaining);
+        drained = !(next.dt > 0);
         return next.dt;
       });
       note_step(taken, step.failure.has_value());

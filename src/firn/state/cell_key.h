@@ -22,7 +22,6 @@ struct CellKey {
   static constexpr int kBitsPerAxis = dim == 3 ? 21 : 31;
   static constexpr std::int64_t kCellLimit = std::int64_t(1) << (kBitsPerAxis - 1);
   static constexpr int kBlockBits = 2 * dim;  ///< a block is 4 cells wide
-  static constexpr std::uint64_t kCellMask = (std::uint64_t(1) << kBlockBits) - 1;
 };
 
 namespace detail {

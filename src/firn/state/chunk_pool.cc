@@ -7,8 +7,8 @@
 namespace firn {
 namespace {
 
-constexpr std::size_t kLine = 64;
-constexpr std::size_t kSmallestSlab = std::size_t(1) << 16, kLargestSlab = std::size_t(1) << 21;
+constexpr std::size_t kLine = 64, kPage = 4096, kLargePage = std::size_t(1) << 21;
+constexpr std::size_t kSmallestSlab = std::size_t(1) << 16, kLargestSlab = 4 * kLargePage;
 
 }  // namespace
 
@@ -24,13 +24,17 @@ std::byte* ChunkPool::take() {
     } else {
       if (unused_chunks_ == 0) {
         // Slabs double, so that small scenes stay small.
-        const std::size_t wanted = std::min(kLargestSlab, kSmallestSlab << std::min<std::size_t>(slabs_.size(), 16));
-        unused_chunks_ = std::max<std::size_t>(1, wanted / chunk_bytes_);
-        const std::size_t bytes = unused_chunks_ * chunk_bytes_;
-        unused_ = static_cast<std::byte*>(::operator new(bytes, kAlignment));
-        slabs_.emplace_back(unused_);
+        const std::size_t bytes =
+            std::max((chunk_bytes_ + kPage - 1) / kPage * kPage,
+                     std::min(kLargestSlab, kSmallestSlab << std::min<std::size_t>(slabs_.size(), 16)));
+        const bool large = bytes % kLargePage == 0;
+        auto* slab = static_cast<std::byte*>(std::aligned_alloc(large ? kLargePage : kPage, bytes));
+        if (slab == nullptr) throw std::bad_alloc();
+        slabs_.emplace_back(slab);
         // Large pages save address translations; where there are none, nothing is lost.
-        if (wanted == kLargestSlab) madvise(unused_, bytes, MADV_HUGEPAGE);
+        if (large) madvise(slab, bytes, MADV_HUGEPAGE);
+        unused_ = slab;
+        unused_chunks_ = bytes / chunk_bytes_;
       }
       chunk = unused_;
       unused_ += chunk_bytes_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -26,9 +27,8 @@ class ChunkPool {
 
  private:
   struct Free {
-    void operator()(std::byte* p) const { ::operator delete(p, kAlignment); }
+    void operator()(std::byte* p) const { std::free(p); }
   };
-  static constexpr std::align_val_t kAlignment{4096};
 
   std::mutex mutex_;
   std::size_t chunk_bytes_;

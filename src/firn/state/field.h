@@ -7,8 +7,8 @@
 
 namespace firn {
 
-/// A quantity that every particle carries. Declared once, in kFields; storage, moves between blocks, hash, output and
-/// restart are derived from it.
+/// A quantity that every particle carries. Declared once, in kFields; storage, moves between blocks and the hash
+/// are derived from it.
 enum class Field : int {
   offset,       ///< position inside the cell, in cells: x = dx (cell + kernel offset + offset), offset in [0, 1]
   strain,       ///< F_p (elastic part, for plastic models), row-major
@@ -44,8 +44,8 @@ struct HistorySpec {
 };
 
 /// Where each number of a particle lies. Field f begins `field[f]` bytes into the particle, its components follow each
-/// other. In a block of capacity n, all of these distances are n times as long, and particle p lies p elements on:
-/// structure of arrays; a particle on its own is a block of capacity 1.
+/// other. In a chunk of n particles, all of these distances are n times as long, and particle p lies p elements on:
+/// structure of arrays; a particle on its own is a chunk of one.
 struct ParticleLayout {
   struct Options {
     bool keeps_velocity = false;  ///< v_p is needed by the next step (FLIP); see kept_bytes

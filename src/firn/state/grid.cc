@@ -68,9 +68,9 @@ Real* Grid<Real, dim>::tile_of(std::uint64_t block) {
 }
 
 template <class Real, int dim>
-bool Grid<Real, dim>::activate(std::vector<std::uint64_t> particle_blocks) {
+void Grid<Real, dim>::activate(std::vector<std::uint64_t> particle_blocks) {
   add_tiles(particle_blocks);
-  if (particle_blocks == particle_blocks_) return false;
+  if (particle_blocks == particle_blocks_) return;
   std::vector<Tile> tiles(particle_blocks.size());
   const auto take = [&](std::vector<std::uint64_t>& from, std::vector<Tile>& old) {
     for (std::size_t i = 0; i < from.size(); ++i) {
@@ -85,7 +85,6 @@ bool Grid<Real, dim>::activate(std::vector<std::uint64_t> particle_blocks) {
   tiles_ = std::move(tiles);
   particle_blocks_ = std::move(particle_blocks);
   link_blocks();
-  return true;
 }
 
 template <class Real, int dim>
@@ -122,7 +121,7 @@ void Grid<Real, dim>::link_blocks() {
   const auto make_room = [&](AlignedVector<Real>& numbers) {
     const std::size_t wanted = node_blocks_.size() * static_cast<std::size_t>(kBlockNodes<dim> * kNodeWidth);
     if (wanted > numbers.capacity()) {
-      numbers = {};
+      AlignedVector<Real>().swap(numbers);
       numbers.reserve(wanted + wanted / 16);
     }
     numbers.resize(wanted);

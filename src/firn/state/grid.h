@@ -53,8 +53,8 @@ class Grid {
   const Period<dim>& period() const { return period_; }
 
   /// Creates the blocks for particles in the given blocks (ascending, unique). Tiles of blocks that stay keep their
-  /// contents, as do those that add_tiles() has made for the new ones. True if anything has changed.
-  bool activate(std::vector<std::uint64_t> particle_blocks);
+  /// contents, as do those that add_tiles() has made for the new ones.
+  void activate(std::vector<std::uint64_t> particle_blocks);
 
   /// Makes zeroed tiles for blocks (ascending) that have none and that the next activate() will hold: particles are
   /// scattered to them while the nodes of the present blocks are still being read.

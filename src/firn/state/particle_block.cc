@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <numeric>
-#include <utility>
 
 namespace firn {
 namespace {
@@ -74,7 +72,7 @@ void ParticleBlock::send_all(const ParticleLayout& layout) {
 }
 
 void ParticleBlock::prefetch_kept(const ParticleLayout& layout, std::size_t p) const {
-  if (p >= count) return;
+  if (p / kChunk >= chunks_.size()) return;
   constexpr std::size_t kLine = 64;
   const ParticleStorage storage = chunk(p);
   const auto ask = [&](int begin, int end) {
@@ -111,29 +109,6 @@ void ParticleBlock::close_gaps(const ParticleLayout& layout, int reals) {
     });
   });
   count = left;
-}
-
-void ParticleBlock::order_by_cell(const ParticleLayout& layout) {
-  const int cell = layout.field[static_cast<std::size_t>(Field::cell)];
-  const int id = layout.field[static_cast<std::size_t>(Field::id)];
-  std::vector<std::pair<std::uint8_t, std::uint32_t>> keys(count);
-  for (std::uint32_t p = 0; p < count; ++p) keys[p] = {at<std::uint8_t>(cell, p), at<std::uint32_t>(id, p)};
-  std::vector<std::uint32_t> order(count);
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; });
-  std::vector<std::byte> sorted;
-  for_each_component(layout, layout.reals, [&](int place, int width) {
-    const auto w = static_cast<std::size_t>(width);
-    sorted.resize(count * w);
-    for (std::size_t p = 0; p < count; ++p) {
-      std::memcpy(sorted.data() + p * w, chunk(order[p]).at<std::byte>(place) + order[p] % kChunk * w, w);
-    }
-    const std::byte* from = sorted.data();
-    for_each_piece(*this, place, width, 0, count, [&](std::byte* target, std::size_t bytes) {
-      std::memcpy(target, from, bytes);
-      from += bytes;
-    });
-  });
 }
 
 ParticleBlock ParticleBlock::copy(ChunkPool& pool) const {

@@ -47,8 +47,6 @@ class ParticleBlock {
   void prefetch_kept(const ParticleLayout& layout, std::size_t p) const;
   /// Closes the gaps that leavers have left, keeping the order of the others. @param reals how many reals to move
   void close_gaps(const ParticleLayout& layout, int reals);
-  /// Sorts by cell, then id.
-  void order_by_cell(const ParticleLayout& layout);
   ParticleBlock copy(ChunkPool& pool) const;
 
  private:

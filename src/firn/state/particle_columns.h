@@ -31,7 +31,7 @@ struct ParticleColumns {
   const Components<Real>& velocity_gradient() const { return grad_v ? grad_v : affine; }
 };
 
-/// Particle storage of one capacity: a block's memory, a batch on its way through the step, or one particle.
+/// Memory of a number of particles: a chunk, what a chunk needs on its way through the step, or a single particle.
 struct ParticleStorage {
   std::byte* memory = nullptr;
   std::size_t capacity = 0;

@@ -46,8 +46,12 @@ Particles<Real, dim>::Particles(const Particles& other)
 
 template <class Real, int dim>
 Particles<Real, dim>& Particles<Real, dim>::operator=(const Particles& other) {
-  if (this != &other) *this = Particles(other);
-  return *this;
+  if (this == &other) return *this;
+  // Own particles go first: there should not be room for three copies.
+  blocks_.clear();
+  new_.clear();
+  pool_.reset();
+  return *this = Particles(other);
 }
 
 template <class Real, int dim>
@@ -192,7 +196,7 @@ void Particles<Real, dim>::create_blocks(const std::vector<std::uint64_t>& keys)
 }
 
 template <class Real, int dim>
-auto Particles<Real, dim>::route() -> std::span<const Arrivals> {
+auto Particles<Real, dim>::route(Order order) -> std::span<const Arrivals> {
   const std::size_t width = record_bytes(layout_);
   std::vector<std::size_t> first(blocks_.size() + 1, 0);
   for (std::size_t b = 0; b < blocks_.size(); ++b) first[b + 1] = first[b] + blocks_[b].leavers.size();
@@ -202,7 +206,10 @@ auto Particles<Real, dim>::route() -> std::span<const Arrivals> {
     for (std::size_t n = 0; n < block.leavers.size(); ++n) {
       const std::byte* record = block.outbox.data() + n * width;
       const ParticleStorage storage = {const_cast<std::byte*>(record), 1};
-      departures_[first[b] + n] = {block.leavers[n].cell, *storage.at<std::uint32_t>(place_of(Field::id)), record};
+      const std::uint64_t cell = block.leavers[n].cell;
+      departures_[first[b] + n] = order == Order::as_appended
+                                      ? Departure{block_of_cell<dim>(cell), static_cast<std::uint32_t>(n), cell, record}
+                                      : Departure{cell, *storage.at<std::uint32_t>(place_of(Field::id)), cell, record};
     }
   });
   // A total order, so the parallel sort has one result.
@@ -262,7 +269,7 @@ void Particles<Real, dim>::settle() {
   parallel_each(blocks_.size(), [&](std::size_t b) {
     blocks_[b].leavers.clear();
     // Not kept: what the busiest step needed, block by block, would be a tenth of the memory of all particles.
-    blocks_[b].outbox = {};
+    std::vector<std::byte>().swap(blocks_[b].outbox);
     blocks_[b].shrink(*pool_);
   });
   std::erase_if(blocks_, [](const ParticleBlock& block) { return block.count == 0; });
@@ -282,10 +289,9 @@ void Particles<Real, dim>::place_new_particles() {
     part.count = 0;
     part.shrink(*pool_);
     blocks_.push_back(std::move(part));
-    for (const Arrivals& arrivals : route()) receive_all(arrivals);
+    for (const Arrivals& arrivals : route(Order::as_appended)) receive_all(arrivals);
     blocks_.pop_back();
   }
-  parallel_each(blocks_.size(), [&](std::size_t b) { blocks_[b].order_by_cell(layout_); });
 }
 
 template <class Real, int dim>

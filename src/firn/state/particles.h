@@ -20,8 +20,9 @@ template <int dim>
 using Period = std::array<std::int64_t, dim>;
 
 /// All particles of one material, in blocks of 4^dim cells along the Morton curve. Inside a block they lie in the order
-/// in which they came, those that came in one step by cell and id: an order that follows from the particles' motion
-/// alone, and not from threads or from where the curve passes. Only particles that change block are moved.
+/// in which they came: first as they were appended, then those that came in one step by cell and id. This order follows
+/// from the particles' motion alone, and not from threads or from where the curve passes. Only particles that change
+/// block are moved.
 ///
 /// Positions keep their precision at any distance from the origin, because only the place inside the cell is a Real.
 template <class Real, int dim>
@@ -139,8 +140,13 @@ class Particles {
   }
   /// Closes the gaps in block b, only in the fields that survive a fused step.
   void close_gaps_of_kept(std::size_t b) { blocks_[b].close_gaps(layout_, layout_.kept_reals); }
+  /// How particles that come to a block at the same time lie in it.
+  enum class Order {
+    by_cell,      ///< then by id
+    as_appended,  ///< whoever restores a state appends particles in the order in which they lay
+  };
   /// Sorts all outboxes by destination and creates blocks that are missing. Block numbers change.
-  std::span<const Arrivals> route();
+  std::span<const Arrivals> route(Order order = Order::by_cell);
   /// Appends as many of the arrivals as the block's last chunk, or a new one, has room for, and takes them off the
   /// list. Kept fields go to the block, the others to `passing` from its first element on. Returns how many. May be
   /// called for several blocks at a time.
@@ -148,15 +154,16 @@ class Particles {
   /// Empties the outboxes, gives unused memory back and removes empty blocks.
   void settle();
 
-  /// Hash of all particles in order: equal for equal bits.
+  /// Hash of all particles in order, once they are sorted: equal for equal bits.
   std::uint64_t hash() const;
 
  private:
   struct Departure {
+    std::uint64_t key;
+    std::uint32_t rank;
     std::uint64_t cell;
-    std::uint32_t id;
     const std::byte* record;
-    bool operator<(const Departure& other) const { return cell != other.cell ? cell < other.cell : id < other.id; }
+    bool operator<(const Departure& other) const { return key != other.key ? key < other.key : rank < other.rank; }
   };
 
   struct Place {

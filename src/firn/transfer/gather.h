@@ -30,11 +30,6 @@ struct GatherReport {
       kNone;  ///< place in the block of the first particle whose motion is not finite, or leaves the range of cell keys
 };
 
-/// Combines reports of consecutive ranges.
-inline GatherReport merge(const GatherReport& a, const GatherReport& b) {
-  return {a.max_speed > b.max_speed ? a.max_speed : b.max_speed, a.failed < b.failed ? a.failed : b.failed};
-}
-
 template <class Real, int dim>
 struct GatherTask {
   const Real* velocity;         ///< tile of v_i
