@@ -4,6 +4,7 @@
 #include <firn/integrators/verbs.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -88,19 +89,53 @@ double apply_colliders(std::span<const PosedCollider<dim>* const> colliders, std
 
 }  // namespace
 
-template <class Real, int dim>
-double largest_speed(const Real* nodes) {
-  Real largest = 0;
-  for (int n = 0; n < kBlockNodes<dim>; ++n) {
-    Real square = 0;
-    for (int i = 0; i < dim; ++i) square += nodes[n * kNodeWidth + i] * nodes[n * kNodeWidth + i];
-    largest = std::max(largest, square);
+/// Largest squares of node vectors by the node's mass: entry k holds nodes of 2^(exponent - k) to twice that.
+struct SpeedsByMass {
+  static constexpr int kClasses = 8;
+  int exponent = std::numeric_limits<int>::min();
+  std::array<double, kClasses> squares = {};
+
+  /// The largest speed of nodes that are not lighter than 2^-kClasses of `heaviest`.
+  double largest(int heaviest) const {
+    double square = 0;
+    for (int k = 0; k < kClasses; ++k) {
+      if (heaviest - exponent + k < kClasses) square = std::max(square, squares[static_cast<std::size_t>(k)]);
+    }
+    return std::sqrt(square);
   }
-  return std::sqrt(static_cast<double>(largest));
+};
+
+/// @param vectors of the block's nodes: velocities or their changes
+template <class Real, int dim>
+SpeedsByMass speeds_by_mass(const Real* nodes, const Real* vectors) {
+  Real heaviest = 0;
+  for (int n = 0; n < kBlockNodes<dim>; ++n) heaviest = std::max(heaviest, nodes[n * kNodeWidth + kMassSlot]);
+  SpeedsByMass speeds;
+  if (!(heaviest > std::numeric_limits<Real>::min())) return speeds;
+  speeds.exponent = std::ilogb(heaviest);
+  Real limit = std::ldexp(Real(1), speeds.exponent);
+  std::array<Real, SpeedsByMass::kClasses> least;
+  for (Real& mass : least) {
+    mass = limit;
+    limit *= Real(0.5);
+  }
+  for (int n = 0; n < kBlockNodes<dim>; ++n) {
+    double square = 0;
+    for (int i = 0; i < dim; ++i) {
+      const auto v = static_cast<double>(vectors[n * kNodeWidth + i]);
+      square += v * v;
+    }
+    std::size_t k = 0;
+    while (k < least.size() && nodes[n * kNodeWidth + kMassSlot] < least[k]) ++k;
+    if (k < least.size()) speeds.squares[k] = std::max(speeds.squares[k], square);
+  }
+  return speeds;
 }
 
-/// No particle can be faster after G2P: PIC and APIC velocities are weighted means of node velocities, FLIP adds a
-/// weighted mean of their changes to what the particle has.
+/// What the speed of particles will not exceed after G2P, as far as time step control is concerned: PIC and APIC
+/// velocities are weighted means of node velocities, FLIP adds a weighted mean of their changes to what the particle
+/// has. Nodes lighter than 1/256 of the heaviest are left out: w_ip <= m_i / m_p, so they are a few per cent of any
+/// particle's velocity, and where gradients do not vanish with the mass they may be fast without meaning.
 template <class Real, int dim>
 double bound_on_speed(const World<Real, dim>& world, double grid_speed, double grid_change) {
   const double flip = world.transfer.flip;
@@ -119,7 +154,8 @@ void update_velocity(World<Real, dim>& world, double dt) {
   for (int i = 0; i < dim; ++i) gravity_impulse[i] = static_cast<Real>(dt * world.gravity[i]);
   const auto blocks = grid.node_blocks();
   struct Speeds {
-    double collider = 0, grid = 0, change = 0;
+    double collider = 0;
+    SpeedsByMass grid, change;
   };
   std::vector<Speeds> speeds(blocks.size());
   parallel_each(blocks.size(), [&](std::size_t g) {
@@ -130,17 +166,20 @@ void update_velocity(World<Real, dim>& world, double dt) {
     momentum_to_velocity<Real, dim>(nodes, change, gravity_impulse);
     const auto near = block_colliders.near(blocks[g], 0);
     if (!near.empty()) speeds[g].collider = apply_colliders<Real, dim>(near, blocks[g], grid.dx(), nodes, change);
-    speeds[g].grid = largest_speed<Real, dim>(nodes);
-    if (change != nullptr) speeds[g].change = largest_speed<Real, dim>(change);
+    speeds[g].grid = speeds_by_mass<Real, dim>(nodes, nodes);
+    if (change != nullptr) speeds[g].change = speeds_by_mass<Real, dim>(nodes, change);
   });
-  Speeds largest;
+  int heaviest = std::numeric_limits<int>::min();
+  for (const Speeds& block : speeds) heaviest = std::max(heaviest, block.grid.exponent);
+  double collider_speed = 0, grid_speed = 0, grid_change = 0;
   for (const Speeds& block : speeds) {
-    largest.collider = std::max(largest.collider, block.collider);
-    largest.grid = std::max(largest.grid, block.grid);
-    largest.change = std::max(largest.change, block.change);
+    collider_speed = std::max(collider_speed, block.collider);
+    if (block.grid.exponent == std::numeric_limits<int>::min()) continue;
+    grid_speed = std::max(grid_speed, block.grid.largest(heaviest));
+    if (grid.has_velocity_change()) grid_change = std::max(grid_change, block.change.largest(heaviest));
   }
-  world.max_collider_speed = largest.collider;
-  world.max_speed = bound_on_speed(world, largest.grid, largest.change);
+  world.max_collider_speed = collider_speed;
+  world.max_speed = bound_on_speed(world, grid_speed, grid_change);
 }
 
 #define FIRN_INSTANTIATE(Real, dim) template void update_velocity<Real, dim>(World<Real, dim>&, double);
