@@ -82,8 +82,8 @@ TYPED_TEST(CellKeys, GroupTheCellsOfABlock) {
     const auto cell = this->random_cell(1000);
     const auto origin = block_origin<dim>(block_of_cell<dim>(cell_key<dim>(cell)));
     for (std::size_t d = 0; d < dim; ++d) {
-      // The nearest multiple of four that is not above, also for negative coordinates.
-      EXPECT_EQ(origin[d], cell[d] - ((cell[d] % kBlockSide) + kBlockSide) % kBlockSide);
+      // The nearest multiple of the side that is not above, also for negative coordinates.
+      EXPECT_EQ(origin[d], cell[d] - ((cell[d] % kBlockSide<dim>)+kBlockSide<dim>) % kBlockSide<dim>);
     }
     EXPECT_EQ(block_of_cell<dim>(cell_key<dim>(origin)), block_of_cell<dim>(cell_key<dim>(cell)));
     EXPECT_LE(cell_key<dim>(origin), cell_key<dim>(cell));

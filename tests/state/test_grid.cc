@@ -14,7 +14,7 @@ namespace {
 template <int dim>
 Index<dim> wrapped(Index<dim> block, const Period<dim>& period) {
   for (std::size_t d = 0; d < dim; ++d) {
-    const std::int64_t blocks = period[d] / kBlockSide;
+    const std::int64_t blocks = period[d] / kBlockSide<dim>;
     if (blocks > 0) block[d] = ((block[d] % blocks) + blocks) % blocks;
   }
   return block;
@@ -23,7 +23,7 @@ Index<dim> wrapped(Index<dim> block, const Period<dim>& period) {
 template <int dim>
 std::uint64_t key_of_block(const Index<dim>& block) {
   Index<dim> cell;
-  for (std::size_t d = 0; d < dim; ++d) cell[d] = block[d] * kBlockSide;
+  for (std::size_t d = 0; d < dim; ++d) cell[d] = block[d] * kBlockSide<dim>;
   return block_of_cell<dim>(cell_key<dim>(cell));
 }
 
@@ -84,8 +84,8 @@ void expect_consistent_everywhere() {
     for (const std::int64_t length : {0, 1, 2, 3, 7}) {
       for (const std::size_t count : {1u, 5u, 60u}) {
         Period<dim> period = {};
-        period[0] = length * kBlockSide;
-        period[dim - 1] = 2 * length * kBlockSide;
+        period[0] = length * kBlockSide<dim>;
+        period[dim - 1] = 2 * length * kBlockSide<dim>;
         std::set<Index<dim>> blocks;
         for (std::size_t n = 0; n < count; ++n) {
           Index<dim> block;

@@ -10,7 +10,7 @@ namespace firn::test {
 template <class Real, int dim, class F>
 void for_each_tile_node(const World<Real, dim>& world, const F& f) {
   const Grid<Real, dim>& grid = world.grid;
-  const int side = tile_side(grid.kernel());
+  const int side = tile_side<dim>(grid.kernel());
   for (std::size_t b = 0; b < grid.particle_blocks().size(); ++b) {
     const Index<dim> origin = block_origin<dim>(grid.particle_blocks()[b]);
     for (int n = 0; n < power(side, dim); ++n) {

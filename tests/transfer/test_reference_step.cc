@@ -175,7 +175,8 @@ TYPED_TEST(ReferenceStep, OneStepWithBodyForceOnPeriodicAxes) {
   using Real = typename TypeParam::Number;
   constexpr int dim = TypeParam::kDim;
   Worst worst;
-  for (const std::int64_t length : {4, 8, 12}) {
+  for (const std::int64_t blocks : {1, 2, 3}) {
+    const std::int64_t length = blocks * kBlockSide<dim>;
     Period<dim> period = {};
     period[0] = period[dim - 1] = length;
     for (const Discretisation& d : kDiscretisations) {
@@ -199,7 +200,7 @@ TYPED_TEST(ReferenceStep, SeveralSteps) {
   Worst worst;
   for_each_setting([&](const TransferSettings& settings) {
     Period<dim> period;
-    period.fill(4);
+    period.fill(kBlockSide<dim>);
     compare_on_all_targets<Real, dim>(
         [&] { return test::comparison_world<Real, dim>(Layout::cloud, settings, false, period); }, kSteps, tolerance,
         worst);
@@ -231,7 +232,7 @@ TYPED_TEST(ReferenceStep, MayAlternateWithFastSteps) {
   using Real = typename TypeParam::Number;
   constexpr int dim = TypeParam::kDim;
   Period<dim> period;
-  period.fill(4);
+  period.fill(kBlockSide<dim>);
   auto mixed = test::comparison_world<Real, dim>(Layout::cloud, {}, false, period);
   auto reference = test::comparison_world<Real, dim>(Layout::cloud, {}, false, period);
   for (int s = 0; s < 6; ++s) {

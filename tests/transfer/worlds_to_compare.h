@@ -36,7 +36,7 @@ std::vector<Vec<double, dim>> cell_positions(Layout layout, Random& random) {
   };
   // Across the origin, where coordinates change sign, and across the border of a block.
   const Vec<double, dim> low = constant_vector<double, dim>(-2.0);
-  if (layout != Layout::counts) add(dim == 2 ? 150 : 400, low, 5);
+  if (layout != Layout::counts) add(400, low, kBlockSide<dim> + 1);
   if (layout == Layout::counts) {
     constexpr int kCounts[] = {1, 0, 7, 8, 9, 64, 1000};
     for (std::size_t c = 0; c < std::size(kCounts); ++c) {

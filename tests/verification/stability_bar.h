@@ -18,9 +18,9 @@ World<Real, dim> noisy_bar(const TransferSettings& settings, int per_cell, Noise
   constexpr double kDx = 0.1, kStiffness = 1e4, kDensity = 1;
   Period<dim> period = {};
   Index<dim> low = {}, high;
-  high.fill(kBlockSide);
+  high.fill(kBlockSide<dim>);
   high[0] = 32;
-  for (std::size_t d = 1; d < dim; ++d) period[d] = kBlockSide;
+  for (std::size_t d = 1; d < dim; ++d) period[d] = kBlockSide<dim>;
   World<Real, dim> world(kDx, settings, period);
   world.add_material("bar", model_number("neo_hookean"), elastic(kStiffness, 0, kDensity));
   add_particles(world, 0, lattice<dim>(low, high, per_cell, kDx), std::pow(kDx / per_cell, dim));

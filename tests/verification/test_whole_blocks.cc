@@ -78,17 +78,20 @@ std::size_t differing_numbers(const TransferSettings& settings, const Index<dim>
   return different;
 }
 
-TEST(WholeBlocks, ChangeNoBit2D) { EXPECT_EQ((differing_numbers<float, 2>({}, {4, -8}, 200)), 0u); }
+TEST(WholeBlocks, ChangeNoBit2D) { EXPECT_EQ((differing_numbers<float, 2>({}, {8, -16}, 200)), 0u); }
 TEST(WholeBlocks, ChangeNoBit3D) { EXPECT_EQ((differing_numbers<float, 3>({}, {-4, 12, 36}, 100)), 0u); }
 TEST(WholeBlocks, ChangeNoBitFarAway3D) { EXPECT_EQ((differing_numbers<float, 3>({}, {40000, -80000, 4}, 100)), 0u); }
 TEST(WholeBlocks, ChangeNoBitFlipDouble) {
-  EXPECT_EQ((differing_numbers<double, 2>({.affine = 0, .flip = 0.95}, {-4, 20}, 100)), 0u);
+  EXPECT_EQ((differing_numbers<double, 2>({.affine = 0, .flip = 0.95}, {-8, 40}, 100)), 0u);
 }
 TEST(WholeBlocks, ChangeNoBitCubic) {
   EXPECT_EQ((differing_numbers<float, 3>({.kernel = Kernel::cubic}, {4, 4, -4}, 50)), 0u);
 }
 /// Control: a shift that is no whole number of blocks regroups the sums.
-TEST(WholeBlocks, ControlPartOfABlock) { EXPECT_GT((differing_numbers<float, 3>({}, {1, 0, 0}, 20)), 100u); }
+TEST(WholeBlocks, ControlPartOfABlock) {
+  EXPECT_GT((differing_numbers<float, 3>({}, {1, 0, 0}, 20)), 100u);
+  EXPECT_GT((differing_numbers<float, 2>({}, {kBlockSide<2> / 2, 0}, 20)), 100u);
+}
 
 }  // namespace
 }  // namespace firn::test

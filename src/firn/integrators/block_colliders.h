@@ -26,9 +26,9 @@ class BlockColliders {
     const Index<dim> origin = block_origin<dim>(block);
     Vec<double, dim> centre;
     for (int d = 0; d < dim; ++d) {
-      centre[d] = dx_ * (static_cast<double>(origin[static_cast<std::size_t>(d)]) + shift + 0.5 * kBlockSide);
+      centre[d] = dx_ * (static_cast<double>(origin[static_cast<std::size_t>(d)]) + shift + 0.5 * kBlockSide<dim>);
     }
-    const double radius = dx_ * 0.5 * kBlockSide * std::sqrt(static_cast<double>(dim)) * 1.001;
+    const double radius = dx_ * 0.5 * kBlockSide<dim> * std::sqrt(static_cast<double>(dim)) * 1.001;
     for (const PosedCollider<dim>& collider : posed_) {
       if (collider.distance(centre) < radius) found.push_back(&collider);
     }

@@ -150,27 +150,31 @@ class BlockNodes {
   }
 
  private:
-  /// Copies the node values that the block's particles touch into one tile.
+  /// Copies the node values that the block's particles touch into one tile. Nodes at the end of rows that belong to no
+  /// cell are zero: they are read with weight zero.
   template <class NodesOf>
   static void load(const Grid<Real, dim>& grid, std::size_t b, const NodesOf& nodes_of, Real* tile) {
-    const int side = tile_side(grid.kernel()), row = tile_row(grid.kernel()), beyond = side - kBlockSide;
+    const int side = tile_side<dim>(grid.kernel()), row = tile_row<dim>(grid.kernel()), beyond = side - kBlockSide<dim>;
     for (int o = 0; o < kReach<dim>; ++o) {
       const Real* nodes = nodes_of(static_cast<std::size_t>(grid.node_block_of(b, o)));
       int from[3] = {0, 0, 0}, count[3] = {1, 1, 1};
       for (int d = 0; d < dim; ++d) {
         const bool upper = (o >> (dim - 1 - d) & 1) != 0;
-        from[3 - dim + d] = upper ? kBlockSide : 0;
-        count[3 - dim + d] = upper ? beyond : kBlockSide;
+        from[3 - dim + d] = upper ? kBlockSide<dim> : 0;
+        count[3 - dim + d] = upper ? beyond : kBlockSide<dim>;
       }
       for (int i = 0; i < count[0]; ++i) {
         for (int j = 0; j < count[1]; ++j) {
-          const int source = (i * kBlockSide + j) * kBlockSide;
+          const int source = (i * kBlockSide<dim> + j) * kBlockSide<dim>;
           const int target = ((from[0] + i) * side + from[1] + j) * row + from[2];
           std::memcpy(tile + target * kNodeWidth, nodes + source * kNodeWidth,
                       static_cast<std::size_t>(count[2] * kNodeWidth) * sizeof(Real));
         }
       }
     }
+    if (row == side) return;
+    for (int r = 0; r < power(side, dim - 1); ++r)
+      std::fill_n(tile + (r * row + side) * kNodeWidth, kNodeWidth, Real(0));
   }
 
   static constexpr int kLargestTile = tile_nodes<dim>(Kernel::cubic) * kNodeWidth;

@@ -12,9 +12,8 @@ namespace {
 
 /// Room for the fields of one chunk that do not survive the step. One per thread.
 ParticleStorage passing_storage(const ParticleLayout& layout) {
-  constexpr std::size_t kPadding = 64;
   thread_local AlignedVector<std::byte> memory;
-  memory.resize(std::max(memory.size(), static_cast<std::size_t>(layout.bytes) * kChunk + kPadding));
+  memory.resize(std::max(memory.size(), static_cast<std::size_t>(layout.bytes) * kChunk));
   return {memory.data(), kChunk};
 }
 
@@ -91,10 +90,8 @@ class Pass {
   void scatter_chunk(const ParticleColumns<Real, dim>& columns, std::uint32_t count, const Index<dim>& origin,
                      Real* tile) const {
     if (world_.body_force) evaluate_body_force<Real, dim>(world_, columns, count, origin, world_.t + dt_);
-    for (int layer = 0; layer < world_.grid.layers(); ++layer) {
-      scatter_(columns, count, world_.grid.dx(), layer == 0 ? next_dt_ : 0, world_.transfer,
-               tile + static_cast<std::size_t>(layer) * world_.grid.tile_size());
-    }
+    Real* before = world_.grid.layers() == 2 ? tile + world_.grid.tile_size() : nullptr;
+    scatter_(columns, count, world_.grid.dx(), next_dt_, world_.transfer, tile, before);
   }
 
   World<Real, dim>& world_;

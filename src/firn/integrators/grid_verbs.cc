@@ -15,7 +15,7 @@ namespace {
 template <class Real, int dim>
 void sum_tiles(const Grid<Real, dim>& grid, std::size_t g, int layer, Real* nodes) {
   std::fill_n(nodes, kBlockNodes<dim> * kNodeWidth, Real(0));
-  const int side = tile_side(grid.kernel()), row = tile_row(grid.kernel()), beyond = side - kBlockSide;
+  const int side = tile_side<dim>(grid.kernel()), row = tile_row<dim>(grid.kernel()), beyond = side - kBlockSide<dim>;
   for (int o = 0; o < kReach<dim>; ++o) {
     const std::int32_t b = grid.particle_block_of(g, o);
     if (b < 0) continue;
@@ -23,12 +23,12 @@ void sum_tiles(const Grid<Real, dim>& grid, std::size_t g, int layer, Real* node
     int from[3] = {0, 0, 0}, count[3] = {1, 1, 1};
     for (int d = 0; d < dim; ++d) {
       const bool upper = (o >> (dim - 1 - d) & 1) != 0;
-      from[3 - dim + d] = upper ? kBlockSide : 0;
-      count[3 - dim + d] = upper ? beyond : kBlockSide;
+      from[3 - dim + d] = upper ? kBlockSide<dim> : 0;
+      count[3 - dim + d] = upper ? beyond : kBlockSide<dim>;
     }
     for (int i = 0; i < count[0]; ++i) {
       for (int j = 0; j < count[1]; ++j) {
-        Real* target = nodes + (i * kBlockSide + j) * kBlockSide * kNodeWidth;
+        Real* target = nodes + (i * kBlockSide<dim> + j) * kBlockSide<dim> * kNodeWidth;
         const Real* source = tile + (((from[0] + i) * side + from[1] + j) * row + from[2]) * kNodeWidth;
         for (int k = 0; k < count[2] * kNodeWidth; ++k) target[k] += source[k];
       }
@@ -56,8 +56,8 @@ template <int dim>
 Vec<double, dim> node_position(std::uint64_t block, int n, double dx) {
   const Index<dim> origin = block_origin<dim>(block);
   Vec<double, dim> x;
-  for (int d = dim - 1; d >= 0; --d, n /= kBlockSide) {
-    x[d] = dx * static_cast<double>(origin[static_cast<std::size_t>(d)] + n % kBlockSide);
+  for (int d = dim - 1; d >= 0; --d, n /= kBlockSide<dim>) {
+    x[d] = dx * static_cast<double>(origin[static_cast<std::size_t>(d)] + n % kBlockSide<dim>);
   }
   return x;
 }

@@ -51,9 +51,8 @@ void scatter(World<Real, dim>& world, double dt) {
       const auto own = static_cast<std::size_t>(material.block_at[b]);
       material.particles.for_each_chunk(own, [&](const auto& columns, std::uint32_t, std::uint32_t count) {
         if (world.body_force) evaluate_body_force<Real, dim>(world, columns, count, origin, world.t);
-        for (int layer = 0; layer < grid.layers(); ++layer) {
-          scatter_block(columns, count, grid.dx(), layer == 0 ? dt : 0, world.transfer, grid.tile(b, layer));
-        }
+        scatter_block(columns, count, grid.dx(), dt, world.transfer, grid.tile(b),
+                      grid.layers() == 2 ? grid.tile(b, 1) : nullptr);
       });
     }
   });

@@ -51,19 +51,20 @@ Regions<dim> regions_of(const Scene& scene) {
 }
 
 /// The cell size nearest to `wanted` that divides the periodic lengths into whole blocks.
+template <int dim>
 double fit_to_period(const Scene& scene, double wanted) {
   double fitted = wanted;
-  for (int d = 0; d < scene.dimension; ++d) {
+  for (int d = 0; d < dim; ++d) {
     const double length = scene.method.periodic[d];
     if (!(length > 0)) continue;
-    const double blocks = std::max(std::round(length / (kBlockSide * fitted)), 1.0);
-    const double cell = length / (kBlockSide * blocks);
+    const double blocks = std::max(std::round(length / (kBlockSide<dim> * fitted)), 1.0);
+    const double cell = length / (kBlockSide<dim> * blocks);
     if (fitted != wanted && std::abs(cell - fitted) > 1e-9 * fitted) {
       throw Error(
           ErrorKind::usage,
           fmt::format("no cell size near {:.4g} m divides all of method.periodic into whole blocks of {} cells; set "
                       "resolution.cell_size",
-                      wanted, kBlockSide));
+                      wanted, kBlockSide<dim>));
     }
     fitted = cell;
   }
@@ -80,7 +81,7 @@ WorldPlan plan_of(const Scene& scene, const Regions<dim>& regions) {
       resolution.cell_size
           ? *resolution.cell_size
           : std::pow(volume * resolution.particles_per_cell / static_cast<double>(*resolution.particles), 1.0 / dim);
-  plan.cell_size = resolution.cell_size ? wanted_cell : fit_to_period(scene, wanted_cell);
+  plan.cell_size = resolution.cell_size ? wanted_cell : fit_to_period<dim>(scene, wanted_cell);
   // With a given cell size the particles per cell are asked for, with a given number of particles that number
   // is.
   const double particles_per_volume = resolution.cell_size

@@ -3,6 +3,7 @@
 #include <firn/scene/nearest.h>
 #include <firn/scene/scene_draft.h>
 #include <firn/scene/value_text.h>
+#include <firn/state/cell_key.h>
 
 #include <fmt/format.h>
 
@@ -12,7 +13,6 @@ namespace firn {
 namespace {
 
 constexpr double kEarthGravity = 9.81;  // m/s^2
-constexpr int kBlockNodes = 4;          // per axis; periods are whole blocks
 
 Vec3d up_direction(const Scene& scene) { return scene.up == Scene::Up::y ? Vec3d{{0, 1, 0}} : Vec3d{{0, 0, 1}}; }
 
@@ -47,12 +47,13 @@ void complete_method(const SceneDraft& draft) {
   }
   const std::optional<double> cell = draft.scene.resolution.cell_size;
   if (!cell) return;
-  const double block = kBlockNodes * *cell;
+  const int side = draft.scene.dimension == 3 ? kBlockSide<3> : kBlockSide<2>;
+  const double block = side * *cell;
   for (int axis = 0; axis < 3; ++axis) {
     const double blocks = method.periodic[axis] / block;
     if (std::abs(blocks - std::round(blocks)) > 1e-9 * std::max(1.0, blocks)) {
       draft.fail("method", 0, "periodic",
-                 fmt::format("periodic must be a multiple of {} cells, {} m, on each axis, got {}", kBlockNodes,
+                 fmt::format("periodic must be a multiple of {} cells, {} m, on each axis, got {}", side,
                              number_text(block), number_text(method.periodic[axis])));
     }
   }

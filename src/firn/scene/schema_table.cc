@@ -86,7 +86,7 @@ Section method() {
       K("periodic", &MethodSettings::periodic)
           .unit("m")
           .at_least(0)
-          .help("Length after which an axis repeats, a multiple of 4 cells; 0: the axis is unbounded."),
+          .help("Length after which an axis repeats, a multiple of 4 cells (8 in 2D); 0: the axis is unbounded."),
   };
   return section;
 }

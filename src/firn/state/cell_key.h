@@ -11,17 +11,20 @@ namespace firn {
 template <int dim>
 using Index = std::array<std::int64_t, dim>;
 
-inline constexpr int kBlockSide = 4;  ///< cells or nodes per axis of a block
+/// Cells or nodes per axis of a block: 64 of them in all. What is done per block is the same in 2D and in 3D, so it
+/// should have as many particles to pay for it.
+template <int dim>
+inline constexpr int kBlockSide = dim == 3 ? 4 : 8;
 
 /// A cell as a point on the Morton curve: the bits of its (shifted) coordinates interleaved, so that the cells of one
-/// block of 4^dim are consecutive and neighbouring blocks lie close together in memory.
+/// block are consecutive and neighbouring blocks lie close together in memory.
 ///
 /// Coordinates reach from -kCellLimit to kCellLimit - 1 on each axis.
 template <int dim>
 struct CellKey {
   static constexpr int kBitsPerAxis = dim == 3 ? 21 : 31;
   static constexpr std::int64_t kCellLimit = std::int64_t(1) << (kBitsPerAxis - 1);
-  static constexpr int kBlockBits = 2 * dim;  ///< a block is 4 cells wide
+  static constexpr int kBlockBits = 6;  ///< of a cell in its block
 };
 
 namespace detail {
@@ -107,11 +110,11 @@ constexpr Index<dim> block_origin(std::uint64_t block) {
   return cell_of_key<dim>(block << CellKey<dim>::kBlockBits);
 }
 
-/// Where a cell lies in its block, the last axis running fastest: 0 to 4^dim - 1.
+/// Where a cell lies in its block, the last axis running fastest: 0 to 63.
 template <int dim>
 constexpr std::uint8_t cell_code(const Index<dim>& cell) {
   int code = 0;
-  for (int d = 0; d < dim; ++d) code = code * kBlockSide + static_cast<int>(cell[d] & (kBlockSide - 1));
+  for (int d = 0; d < dim; ++d) code = code * kBlockSide<dim> + static_cast<int>(cell[d] & (kBlockSide<dim> - 1));
   return static_cast<std::uint8_t>(code);
 }
 
@@ -122,7 +125,7 @@ inline constexpr std::uint8_t kNoCell = 0xff;
 template <int dim>
 constexpr Index<dim> cell_of_code(const Index<dim>& origin, std::uint8_t code) {
   Index<dim> cell = origin;
-  for (int d = dim - 1, rest = code; d >= 0; --d, rest /= kBlockSide) cell[d] += rest % kBlockSide;
+  for (int d = dim - 1, rest = code; d >= 0; --d, rest /= kBlockSide<dim>) cell[d] += rest % kBlockSide<dim>;
   return cell;
 }
 

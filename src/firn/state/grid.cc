@@ -13,7 +13,7 @@ std::uint64_t neighbour(std::uint64_t block, int o, const Period<dim>& period) {
   for (int d = 0; d < dim; ++d) {
     if ((o >> (dim - 1 - d) & 1) == 0) continue;
     std::int64_t& c = origin[static_cast<std::size_t>(d)];
-    c += kBlockSide;
+    c += kBlockSide<dim>;
     if (const std::int64_t length = period[static_cast<std::size_t>(d)]; length > 0) c = (c + length) % length;
   }
   return block_of_cell<dim>(cell_key<dim>(origin));

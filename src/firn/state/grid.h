@@ -16,22 +16,28 @@ constexpr int power(int base, int exponent) { return exponent == 0 ? 1 : base * 
 
 /// Nodes of a block; the last axis runs fastest.
 template <int dim>
-inline constexpr int kBlockNodes = power(kBlockSide, dim);
+inline constexpr int kBlockNodes = power(kBlockSide<dim>, dim);
 
 /// Blocks that a particle block reaches: itself and its upper neighbours.
 template <int dim>
 inline constexpr int kReach = 1 << dim;
 
 /// Nodes per axis of the tile that the particles of one block touch.
-constexpr int tile_side(Kernel kernel) { return kBlockSide + support(kernel) - 1; }
+template <int dim>
+constexpr int tile_side(Kernel kernel) {
+  return kBlockSide<dim> + support(kernel) - 1;
+}
 
 /// Nodes from one row of a tile to the next. Even, so that nodes can be handled in pairs that never overlap by half: a
 /// load that covers two earlier stores waits until both have reached the cache.
-constexpr int tile_row(Kernel kernel) { return (tile_side(kernel) + 1) / 2 * 2; }
+template <int dim>
+constexpr int tile_row(Kernel kernel) {
+  return (tile_side<dim>(kernel) + 1) / 2 * 2;
+}
 
 template <int dim>
 constexpr int tile_nodes(Kernel kernel) {
-  return power(tile_side(kernel), dim - 1) * tile_row(kernel);
+  return power(tile_side<dim>(kernel), dim - 1) * tile_row<dim>(kernel);
 }
 
 /// Every node value is four numbers: in 3D (x, y, z, mass), in 2D (x, y, 0, mass). What xyz means changes during the
@@ -39,7 +45,7 @@ constexpr int tile_nodes(Kernel kernel) {
 inline constexpr int kNodeWidth = 4;
 inline constexpr int kMassSlot = 3;
 
-/// Sparse, unbounded grid: blocks of 4^dim nodes where particles are.
+/// Sparse, unbounded grid: blocks of 4^3 or 8^2 nodes where particles are.
 ///
 /// Particles of a block scatter into that block's private tile, which overlaps its upper neighbours; node blocks then
 /// sum the tiles that touch them in a fixed order, without atomics.

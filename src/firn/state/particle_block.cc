@@ -87,8 +87,8 @@ void ParticleBlock::prefetch_kept(const ParticleLayout& layout, std::size_t p) c
 void ParticleBlock::close_gaps(const ParticleLayout& layout, int reals) {
   if (leavers.empty()) return;
   // Runs between leavers are short, so they are copied in steps of fixed size that may reach beyond their end, to a
-  // buffer: in place, a step could overwrite what has not been read yet. Behind a chunk's last component lies padding.
-  constexpr std::size_t kStep = 32;
+  // buffer: in place, a step could overwrite what has not been read yet.
+  constexpr std::size_t kStep = kBeyond;
   const std::size_t first_gap = leavers.front().place;
   thread_local std::vector<std::byte> buffer;
   buffer.resize(std::max(buffer.size(), count * sizeof(double) + kStep));

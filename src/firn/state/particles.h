@@ -19,10 +19,10 @@ namespace firn {
 template <int dim>
 using Period = std::array<std::int64_t, dim>;
 
-/// All particles of one material, in blocks of 4^dim cells along the Morton curve. Inside a block they lie in the order
-/// in which they came: first as they were appended, then those that came in one step by cell and id. This order follows
-/// from the particles' motion alone, and not from threads or from where the curve passes. Only particles that change
-/// block are moved.
+/// All particles of one material, in blocks of 4^3 or 8^2 cells along the Morton curve. Inside a block they lie in the
+/// order in which they came: first as they were appended, then those that came in one step by cell and id. This order
+/// follows from the particles' motion alone, and not from threads or from where the curve passes. Only particles that
+/// change block are moved.
 ///
 /// Positions keep their precision at any distance from the origin, because only the place inside the cell is a Real.
 template <class Real, int dim>

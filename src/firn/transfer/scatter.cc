@@ -20,31 +20,30 @@ constexpr int stress_index(int i, int j) {
 }
 
 /// What one batch of particles brings to the grid, computed in lanes and read particle by particle.
-template <Kernel kernel, Form form, class Real, int dim>
+template <Kernel kernel, Form form, bool flip, class Real, int dim>
 struct ScatterBatch {
   static constexpr std::size_t kCount = Lanes<Real>::kCount;
   static constexpr int kSupport = support(kernel);
   static constexpr int kRows = power(kSupport, dim - 1);  // rows of nodes run along the last axis
   static constexpr bool kGradient = form == Form::gradient;
 
-  // A row is handled in groups of nodes that begin at multiples of a group, so it may begin and end with nodes of
-  // weight zero.
   static constexpr int kGroupNodes = NodeGroup<Real>::kNodes;
-  static constexpr int kGroups = (kSupport + 2 * (kGroupNodes - 1)) / kGroupNodes;
-  static constexpr int kSlots = 1 + kGroups * kGroupNodes;
+  static constexpr int kGroups = NodeRow<kernel, Real>::kGroups;
+  static constexpr int kSlots = NodeRow<kernel, Real>::kSlots;
 
   HWY_ALIGN Real row_weight[kRows][kCount];
   HWY_ALIGN Real row_gradient[kGradient ? dim - 1 : 1][kRows][kCount];  // with the derivative on one of the axes
-  HWY_ALIGN Real weight[kSlots][kCount] = {};  // on the last axis; slot 1 + a belongs to node a, the others are zero
+  HWY_ALIGN Real weight[kSlots][kCount] = {};                           // on the last axis, by slot
   HWY_ALIGN Real dweight[kGradient ? kSlots : 1][kCount] = {};
   HWY_ALIGN Real first_node[kCount * kNodeWidth];    // momentum and mass per weight at the cell's first node
   HWY_ALIGN Real step[dim][kCount * kNodeWidth];     // how that changes from node to node on each axis
+  HWY_ALIGN Real before[kCount * kNodeWidth];        // FLIP: momentum before the forces, and mass
   HWY_ALIGN Real impulse[dim][kCount * kNodeWidth];  // gradient form: -dt V0 tau / dx, by columns
 };
 
-template <Kernel kernel, Form form, class Real, int dim>
+template <Kernel kernel, Form form, bool flip, class Real, int dim>
 HWY_INLINE void fill_weights(const ParticleColumns<Real, dim>& particles, std::uint32_t p,
-                             ScatterBatch<kernel, form, Real, dim>& batch) {
+                             ScatterBatch<kernel, form, flip, Real, dim>& batch) {
   using L = Lanes<Real>;
   using Axis = AxisWeights<kernel, L>;
   constexpr int kSupport = support(kernel);
@@ -74,9 +73,9 @@ HWY_INLINE void fill_weights(const ParticleColumns<Real, dim>& particles, std::u
   }
 }
 
-template <Kernel kernel, Form form, class Real, int dim>
+template <Kernel kernel, Form form, bool flip, class Real, int dim>
 HWY_INLINE void fill_batch(const ParticleColumns<Real, dim>& particles, std::uint32_t p, Real dx, Real dt, Real affine,
-                           ScatterBatch<kernel, form, Real, dim>& batch) {
+                           ScatterBatch<kernel, form, flip, Real, dim>& batch) {
   using L = Lanes<Real>;
   fill_weights(particles, p, batch);
   const L mass = load_lanes(particles.mass + p);
@@ -89,12 +88,13 @@ HWY_INLINE void fill_batch(const ParticleColumns<Real, dim>& particles, std::uin
     }
   }
   // mv(x_i) / w = q + A (x_i - x_p), here per cell instead of per metre.
-  Vec<L, dim> q;
+  Vec<L, dim> q, before;
   Mat<L, dim> A;
   const L spin = L(affine * dx) * mass;
   const L stiffness = L(-dt * static_cast<Real>(apic_inverse_D(kernel)) / dx) * volume;
   for (int i = 0; i < dim; ++i) {
     L v = load_lanes(particles.velocity[i] + p);
+    before[i] = mass * v;
     if (particles.acceleration) v = mul_add(L(dt), load_lanes(particles.acceleration[i] + p), v);
     q[i] = mass * v;
     for (int j = 0; j < dim; ++j) {
@@ -109,6 +109,7 @@ HWY_INLINE void fill_batch(const ParticleColumns<Real, dim>& particles, std::uin
 
   const L zero = L(Real(0));
   store_as_nodes<Real, dim>(q, mass, batch.first_node);
+  if constexpr (flip) store_as_nodes<Real, dim>(before, mass, batch.before);
   const L force = L(-dt / dx) * volume;
   for (int d = 0; d < dim; ++d) {
     Vec<L, dim> column;
@@ -136,11 +137,11 @@ HWY_INLINE NodeGroup<Real> node_numbers(int first) {
 
 /// Adds one particle to its nodes: w_a w_b (w_c (q + a A_x + b A_y + c A_z)), with what does not change from row to row
 /// in registers.
-template <Kernel kernel, Form form, class Real, int dim>
-HWY_INLINE void scatter_particle(const ScatterBatch<kernel, form, Real, dim>& batch, std::size_t lane,
-                                 Real* HWY_RESTRICT first, int shift) {
+template <Kernel kernel, Form form, bool flip, class Real, int dim>
+HWY_INLINE void scatter_particle(const ScatterBatch<kernel, form, flip, Real, dim>& batch, std::size_t lane,
+                                 Real* HWY_RESTRICT first, Real* HWY_RESTRICT first_before, int shift) {
   using G = NodeGroup<Real>;
-  using Batch = ScatterBatch<kernel, form, Real, dim>;
+  using Batch = ScatterBatch<kernel, form, flip, Real, dim>;
   constexpr int kGroups = Batch::kGroups, kLast = dim - 1;
   constexpr bool kGradient = form == Form::gradient;
   const std::size_t at = lane * kNodeWidth;
@@ -150,11 +151,12 @@ HWY_INLINE void scatter_particle(const ScatterBatch<kernel, form, Real, dim>& ba
     step[d] = G::repeat(batch.step[d] + at);
     if constexpr (kGradient) impulse[d] = G::repeat(batch.impulse[d] + at);
   }
-  G value[kGroups], to_next[kLast][kGroups], force[kLast][kGroups];
+  G value[kGroups], before[kGroups], to_next[kLast][kGroups], force[kLast][kGroups];
   for (int g = 0; g < kGroups; ++g) {
     const int node = g * Batch::kGroupNodes - shift;
     const G w = G::spread(batch.weight[1 + node] + lane, Batch::kCount);
     value[g] = w * mul_add(node_numbers<Real>(node), step[kLast], q);
+    if constexpr (flip) before[g] = w * G::repeat(batch.before + at);
     if constexpr (kGradient) {
       value[g] = mul_add(G::spread(batch.dweight[1 + node] + lane, Batch::kCount), impulse[kLast], value[g]);
     }
@@ -164,9 +166,8 @@ HWY_INLINE void scatter_particle(const ScatterBatch<kernel, form, Real, dim>& ba
     }
   }
   const auto add_row = [&](int row, const G(&row_value)[kGroups]) HWY_ATTR {
-    const int a = dim == 3 ? row / Batch::kSupport : row, b = row % Batch::kSupport;
-    Real* HWY_RESTRICT nodes =
-        first + a * tile_stride<dim>(kernel, 0) + (dim == 3 ? b * tile_stride<dim>(kernel, 1) : 0);
+    const int place = row_place<dim>(kernel, row);
+    Real* HWY_RESTRICT nodes = first + place;
     const G w = G::broadcast(batch.row_weight[row][lane]);
     for (int g = 0; g < kGroups; ++g) {
       const G node = G::load(nodes + g * G::kNumbers);
@@ -179,6 +180,10 @@ HWY_INLINE void scatter_particle(const ScatterBatch<kernel, form, Real, dim>& ba
         (node + addend).store(nodes + g * G::kNumbers);
       } else {
         mul_add(w, row_value[g], node).store(nodes + g * G::kNumbers);
+      }
+      if constexpr (flip) {
+        Real* HWY_RESTRICT nodes_before = first_before + place + g * G::kNumbers;
+        mul_add(w, before[g], G::load(nodes_before)).store(nodes_before);
       }
     }
   };
@@ -197,23 +202,36 @@ HWY_INLINE void scatter_particle(const ScatterBatch<kernel, form, Real, dim>& ba
   }
 }
 
-template <Kernel kernel, Form form, class Real, int dim>
-void scatter_block(const ParticleColumns<Real, dim>& particles, std::uint32_t count, double dx, double dt,
-                   const TransferSettings& settings, Real* tile) {
-  using Batch = ScatterBatch<kernel, form, Real, dim>;
+template <Kernel kernel, Form form, bool flip, class Real, int dim>
+void scatter_particles(const ParticleColumns<Real, dim>& particles, std::uint32_t count, double dx, double dt,
+                       const TransferSettings& settings, Real* tile, Real* before) {
+  using Batch = ScatterBatch<kernel, form, flip, Real, dim>;
   static constexpr auto kTileOffsets = tile_offsets<dim>(kernel);
   Batch batch;
   for (std::uint32_t p = 0; p < count; p += Batch::kCount) {
-    fill_batch<kernel, form, Real, dim>(particles, p, static_cast<Real>(dx), static_cast<Real>(dt),
-                                        static_cast<Real>(settings.affine), batch);
+    fill_batch<kernel, form, flip, Real, dim>(particles, p, static_cast<Real>(dx), static_cast<Real>(dt),
+                                              static_cast<Real>(settings.affine), batch);
     const std::uint32_t lanes = count - p < Batch::kCount ? count - p : Batch::kCount;
     for (std::uint32_t lane = 0; lane < lanes; ++lane) {
       const std::uint8_t cell = particles.cell[p + lane];
       if (cell == kNoCell) continue;
       const int shift = cell % Batch::kGroupNodes;
-      scatter_particle(batch, lane, tile + kTileOffsets[cell] - shift * kNodeWidth, shift);
+      const int place = kTileOffsets[cell] - shift * kNodeWidth;
+      scatter_particle(batch, lane, tile + place, flip ? before + place : nullptr, shift);
     }
   }
+}
+
+template <Kernel kernel, Form form, class Real, int dim>
+void scatter_block(const ParticleColumns<Real, dim>& particles, std::uint32_t count, double dx, double dt,
+                   const TransferSettings& settings, Real* tile, Real* before) {
+  if (before != nullptr && settings.affine == 0) {
+    scatter_particles<kernel, form, true, Real, dim>(particles, count, dx, dt, settings, tile, before);
+    return;
+  }
+  scatter_particles<kernel, form, false, Real, dim>(particles, count, dx, dt, settings, tile, nullptr);
+  if (before == nullptr) return;
+  scatter_particles<kernel, form, false, Real, dim>(particles, count, dx, 0, settings, before, nullptr);
 }
 
 template <class Real, int dim>
