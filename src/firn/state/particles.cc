@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kIndexStep = 256;
 /// New particles wait in parts of this size, so that their memory can be given back part by part while blocks fill.
-constexpr std::size_t kNewPart = 1 << 11;
+constexpr std::size_t kNewPart = 1 << 13;
 
 /// With room behind the last component for ParticleBlock::close_gaps to read beyond it. Whole vectors that begin at a
 /// real need none: more than a vector of other numbers follows the reals.
