@@ -14,6 +14,56 @@ void copy_components(int first, int last, ParticleStorage from, std::size_t i, P
   for (int k = first; k < last; ++k, source += from.capacity, target += to.capacity) *target = *source;
 }
 
+/// Neighbouring particles of one chunk on their way to lower places, in the same chunk or another.
+struct Run {
+  ParticleStorage from;
+  std::size_t from_lane;
+  ParticleStorage to;
+  std::size_t to_lane, particles;
+};
+
+/// Moves the first `bytes` at `from` to the lower address `to`, for every component: both go on by `stride`. In steps
+/// of a fixed size, because runs are too short to pay for a call of memmove; the last step, which overlaps the one
+/// before, is read before anything is written over it.
+template <std::size_t kStep>
+void move_down(std::byte* to, const std::byte* from, std::size_t bytes, std::size_t stride, int components) {
+  struct Step {
+    std::byte bytes[kStep];
+  };
+  const auto copy = [](void* target, const void* source) { std::memcpy(target, source, kStep); };
+  for (int k = 0; k < components; ++k, to += stride, from += stride) {
+    Step last;
+    copy(&last, from + bytes - kStep);
+    for (std::size_t at = 0; at + kStep < bytes; at += kStep) {
+      Step step;
+      copy(&step, from + at);
+      copy(to + at, &step);
+    }
+    copy(to + bytes - kStep, &last);
+  }
+}
+
+void move_down(const Run& run, int place, int width, int components) {
+  const auto w = static_cast<std::size_t>(width);
+  const std::size_t bytes = run.particles * w;
+  std::byte* to = run.to.at<std::byte>(place) + run.to_lane * w;
+  const std::byte* from = run.from.at<std::byte>(place) + run.from_lane * w;
+  const auto move = bytes >= 32   ? &move_down<32>
+                    : bytes >= 16 ? &move_down<16>
+                    : bytes >= 8  ? &move_down<8>
+                    : bytes >= 4  ? &move_down<4>
+                    : bytes >= 2  ? &move_down<2>
+                                  : &move_down<1>;
+  move(to, from, bytes, kChunk * w, components);
+}
+
+void move_down(const ParticleLayout& layout, int reals, const Run& run) {
+  move_down(run, 0, layout.real_bytes, reals);
+  move_down(run, layout.field[static_cast<std::size_t>(Field::id)], 4, 1);
+  move_down(run, layout.field[static_cast<std::size_t>(Field::body)], 2, 1);
+  move_down(run, layout.field[static_cast<std::size_t>(Field::cell)], 1, 1);
+}
+
 }  // namespace
 
 void copy_reals(const ParticleLayout& layout, int first, int last, ParticleStorage from, std::size_t i,
@@ -86,29 +136,18 @@ void ParticleBlock::prefetch_kept(const ParticleLayout& layout, std::size_t p) c
 
 void ParticleBlock::close_gaps(const ParticleLayout& layout, int reals) {
   if (leavers.empty()) return;
-  // Runs between leavers are short, so they are copied in steps of fixed size that may reach beyond their end, to a
-  // buffer: in place, a step could overwrite what has not been read yet.
-  constexpr std::size_t kStep = kBeyond;
-  const std::size_t first_gap = leavers.front().place;
-  thread_local std::vector<std::byte> buffer;
-  buffer.resize(std::max(buffer.size(), count * sizeof(double) + kStep));
-  const auto left = static_cast<std::uint32_t>(count - leavers.size());
-  for_each_component(layout, reals, [&](int place, int width) {
-    std::byte* to = buffer.data();
-    for (std::size_t n = 0; n < leavers.size(); ++n) {
-      const std::size_t until = n + 1 < leavers.size() ? leavers[n + 1].place : count;
-      for_each_piece(*this, place, width, leavers[n].place + 1, until, [&](const std::byte* from, std::size_t bytes) {
-        for (std::size_t k = 0; k < bytes; k += kStep) std::memcpy(to + k, from + k, kStep);
-        to += bytes;
-      });
+  std::size_t to = leavers.front().place;
+  for (std::size_t n = 0; n < leavers.size(); ++n) {
+    std::size_t from = leavers[n].place + 1;
+    const std::size_t until = n + 1 < leavers.size() ? leavers[n + 1].place : count;
+    while (from < until) {
+      const std::size_t moved = std::min({until - from, kChunk - from % kChunk, kChunk - to % kChunk});
+      move_down(layout, reals, {chunk(from), from % kChunk, chunk(to), to % kChunk, moved});
+      from += moved;
+      to += moved;
     }
-    const std::byte* from = buffer.data();
-    for_each_piece(*this, place, width, first_gap, left, [&](std::byte* target, std::size_t bytes) {
-      std::memcpy(target, from, bytes);
-      from += bytes;
-    });
-  });
-  count = left;
+  }
+  count = static_cast<std::uint32_t>(to);
 }
 
 ParticleBlock ParticleBlock::copy(ChunkPool& pool) const {

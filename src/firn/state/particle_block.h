@@ -25,9 +25,6 @@ class ParticleBlock {
   std::vector<std::byte> outbox = {};     ///< their records, one after the other
   std::vector<std::uint64_t> cells = {};  ///< of particles that have no block yet: their keys, instead of codes
 
-  /// Bytes that may be read, but not used, behind the last component of a chunk.
-  static constexpr std::size_t kBeyond = 32;
-
   /// The chunk of particle p, which lies in it at p % kChunk.
   ParticleStorage chunk(std::size_t p) const { return {chunks_[p / kChunk], kChunk}; }
   /// One number of particle p.

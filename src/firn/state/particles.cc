@@ -16,11 +16,10 @@ constexpr std::size_t kIndexStep = 256;
 /// New particles wait in parts of this size, so that their memory can be given back part by part while blocks fill.
 constexpr std::size_t kNewPart = 1 << 13;
 
-/// With room behind the last component for ParticleBlock::close_gaps to read beyond it. Whole vectors that begin at a
-/// real need none: more than a vector of other numbers follows the reals.
+/// More than a vector's size of other numbers follows the reals, so that a whole vector may be read from any real on.
 std::size_t chunk_bytes(const ParticleLayout& layout) {
   static_assert(kChunk * sizeof(std::uint32_t) >= 64);
-  return static_cast<std::size_t>(layout.bytes) * kChunk + ParticleBlock::kBeyond;
+  return static_cast<std::size_t>(layout.bytes) * kChunk;
 }
 
 }  // namespace
