@@ -71,7 +71,7 @@ constexpr Look kLooks[] = {
     soft("water", {{0.06F, 0.20F, 0.30F}}, 1.0F, 0.50F, {{0.01F, 0.05F, 0.07F}}),
 
     solid("rubber", {{0.10F, 0.095F, 0.09F}}, 0.25F),
-    solid("mud", {{0.115F, 0.075F, 0.045F}}, 0.55F),
+    solid("mud", {{0.115F, 0.070F, 0.038F}}, 0.35F),
     solid("clay", {{0.34F, 0.29F, 0.225F}}, 0.1F),
     solid("plasticine", {{0.10F, 0.22F, 0.52F}}, 0.15F),
     // Normal reflectance of iron 0.56, 0.57, 0.58 and of copper 0.95, 0.64, 0.54 (Akenine-Moeller et al. 2018, table
@@ -84,13 +84,13 @@ constexpr Look kLooks[] = {
     grains("concrete", {{0.36F, 0.355F, 0.34F}}, 0.85F, 0.07F),
     // Crust, with the red of the melt shining through.
     {.name = "lava",
-     .color = {{0.075F, 0.045F, 0.04F}},
+     .color = {{0.035F, 0.024F, 0.021F}},
      .wrap = 0.1F,
      .smooth = 0.85F,
      .jitter = 0.35F,
      .sparkle = 0,
      .gloss = 0.15F,
-     .glow = {{0.32F, 0.05F, 0.004F}}},
+     .glow = {{0.16F, 0.015F, 0.001F}}},
 
     // Models without a preset: colours that tell them apart.
     soft("neo_hookean", {{0.06F, 0.36F, 0.12F}}, 0.7F, 0.5F, {{0.02F, 0.12F, 0.03F}}),
