@@ -3,7 +3,7 @@ BUILD ?= build
 JOBS  ?= $(shell nproc)
 SCENE ?= scenes/snow_cube.toml
 
-.PHONY: all demo test build sanitize bench format tidy dependencies clean
+.PHONY: all demo test build sanitize bench gallery format tidy dependencies clean
 
 all: build
 
@@ -26,6 +26,9 @@ sanitize: dependencies ## the tests under AddressSanitizer and UndefinedBehavior
 
 bench: build ## particle-steps per second, bytes per particle and the time of each verb of the step
 	$(BUILD)/firn bench
+
+gallery: build ## run every scene of scenes/gallery; writes docs/gallery.md and its pictures
+	tools/gallery.py --firn $(BUILD)/firn
 
 format: ## rewrite the sources in the project's layout
 	git ls-files 'src/*.h' 'src/*.cc' 'tests/*.h' 'tests/*.cc' | xargs clang-format -i

@@ -1,5 +1,6 @@
 #include "scene/scene_text.h"
 
+#include <firn/materials/model_info.h>
 #include <firn/scene/document.h>
 #include <firn/scene/explain.h>
 #include <firn/scene/resolved.h>
@@ -75,7 +76,7 @@ bool valid(const Json& schema, const Json& value) {
 
 std::vector<std::filesystem::path> shipped_scenes() {
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(FIRN_SOURCE_DIR) + "/scenes")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(std::string(FIRN_SOURCE_DIR) + "/scenes")) {
     if (entry.path().extension() == ".toml") paths.push_back(entry.path());
   }
   std::ranges::sort(paths);
@@ -90,6 +91,16 @@ TEST(ShippedScenes, LoadAndFitTheJsonSchema) {
     EXPECT_TRUE(valid(schema, to_json(parse_document(path.string(), read_scene_text(path)).root))) << path;
     const Scene scene = load_scene(path);
     EXPECT_TRUE(valid(schema, to_json(parse_document("resolved", resolved_toml(scene)).root))) << path;
+  }
+}
+
+TEST(ShippedScenes, TheGalleryHasOneOfEachPreset) {
+  const std::filesystem::path gallery = std::string(FIRN_SOURCE_DIR) + "/scenes/gallery";
+  for (const Preset& preset : all_presets()) {
+    const Scene scene = load_scene(gallery / (std::string(preset.name) + ".toml"));
+    ASSERT_FALSE(scene.materials.empty());
+    EXPECT_EQ(scene.materials[0].preset, preset.name);
+    EXPECT_FALSE(scene.title.empty()) << preset.name;
   }
 }
 

@@ -6,7 +6,7 @@ namespace firn {
 namespace {
 
 // Sources that several presets share. "chosen" numbers name what they have to bring about;
-// tests/materials/test_presets.cc measures it.
+// tests/materials/test_presets.cc measures it on a point, and the scenes of docs/materials.md in the whole step.
 constexpr std::string_view kStomakhin = "Stomakhin et al. 2013, table 2, doi:10.1145/2461912.2461948";
 constexpr std::string_view kKlar = "Klar et al. 2016, doi:10.1145/2897824.2925906";
 constexpr std::string_view kTaylorBar =
