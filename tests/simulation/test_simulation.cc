@@ -128,6 +128,24 @@ TEST(Simulation, AFailingFrameIsTakenBackAndComputedWithSmallerSteps) {
   EXPECT_TRUE(std::isfinite(simulation->totals().kinetic_energy));
 }
 
+TEST(Simulation, AFrameThatFailsWithAllStepsLeavesTheLastGoodOne) {
+  const LogCapture log;
+  std::string text = crash_scene("");
+  text.replace(text.find("-3000"), 5, "-3e6");
+  const auto simulation = make(text);
+  const std::uint64_t before = simulation->hash();
+  const std::int64_t particles = simulation->report().particles;
+  EXPECT_THROW(
+      {
+        for (int frame = 2; frame <= 3; ++frame) simulation->advance_frame();
+      },
+      Error);
+  EXPECT_EQ(simulation->hash(), before);
+  EXPECT_EQ(simulation->report().frame, 1);
+  EXPECT_EQ(simulation->report().time, 0);
+  EXPECT_EQ(simulation->report().particles, particles);
+}
+
 TEST(Simulation, WithoutRollbackAFailureIsAReport) {
   const auto simulation = make(crash_scene("rollback = \"off\"\n"));
   try {

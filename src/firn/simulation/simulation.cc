@@ -86,7 +86,10 @@ class SimulationOf final : public Simulation {
       if (!kept_) break;
     }
     const std::string text = describe(*failure, report_.dt);
-    if (kept_) restore();
+    if (kept_) {
+      restore();
+      report_ = kept_->report;
+    }
     throw Error(ErrorKind::numerical, text);
   }
 
@@ -144,6 +147,7 @@ class SimulationOf final : public Simulation {
     double t, max_speed, max_collider_speed;
     std::uint64_t steps;
     std::int64_t parked;
+    FrameReport report;
   };
 
   void keep() {
@@ -158,6 +162,7 @@ class SimulationOf final : public Simulation {
     kept_->max_collider_speed = world_->max_collider_speed;
     kept_->steps = world_->steps;
     kept_->parked = guard_.parked();
+    kept_->report = report_;
   }
 
   void restore() {
