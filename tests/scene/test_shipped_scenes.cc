@@ -75,7 +75,7 @@ bool valid(const Json& schema, const Json& value) {
 
 std::vector<std::filesystem::path> shipped_scenes() {
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(FIRN_SOURCE_DIR) + "/scenes")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(std::string(FIRN_SOURCE_DIR) + "/scenes")) {
     if (entry.path().extension() == ".toml") paths.push_back(entry.path());
   }
   std::ranges::sort(paths);
