@@ -54,8 +54,19 @@ Vec3d mean_velocity(const ParticleColumns& particles, int body) {
   return (1 / count) * sum;
 }
 
-std::vector<std::string> one_block_wide(double cell_size) {
-  return {fmt::format("resolution.cell_size={}", cell_size), fmt::format("method.periodic=[0, {}]", 4 * cell_size)};
+std::vector<std::string> slab(double cell_size, int axis, const std::vector<Piece>& pieces) {
+  constexpr double kBlock = 4;
+  const auto pair = [&](double along, double across) {
+    return axis == 0 ? fmt::format("[{}, {}]", along, across) : fmt::format("[{}, {}]", across, along);
+  };
+  const double width = kBlock * cell_size;
+  std::vector<std::string> overrides = {fmt::format("resolution.cell_size={}", cell_size),
+                                        "method.periodic=" + pair(0, width)};
+  for (const Piece& piece : pieces) {
+    overrides.push_back("body." + piece.body + ".size=" + pair(piece.to - piece.from, width));
+    overrides.push_back("body." + piece.body + ".position=" + pair(0.5 * (piece.from + piece.to), 0.5 * width));
+  }
+  return overrides;
 }
 
 }  // namespace firn::test

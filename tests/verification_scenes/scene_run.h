@@ -34,8 +34,14 @@ double axial_stress(const ParticleColumns& particles, std::size_t p, bool compre
 /// Mean of a body's velocities.
 Vec3d mean_velocity(const ParticleColumns& particles, int body);
 
-/// Overrides that make a scene one block of cells wide in y: a problem in x alone. The body's box is centred at
-/// (x_center, 2 cell_size).
-std::vector<std::string> one_block_wide(double cell_size);
+/// Part of a bar: the box body `body` from `from` to `to` along the bar, m.
+struct Piece {
+  std::string body;
+  double from = 0, to = 0;
+};
+
+/// Overrides that make a 2D scene of box bodies a problem in one dimension, `axis`: cells of this size and just one
+/// block of them across, periodic.
+std::vector<std::string> slab(double cell_size, int axis, const std::vector<Piece>& pieces);
 
 }  // namespace firn::test
