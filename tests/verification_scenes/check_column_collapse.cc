@@ -56,7 +56,7 @@ struct Column {
   bool gated;  ///< fine enough for the band of the experiments
 };
 
-constexpr Column kColumns[] = {{0.5, 16, true, false}, {0.5, 32, false, false}, {0.5, 64, false, false},
+constexpr Column kColumns[] = {{0.5, 16, true, false}, {0.5, 32, false, false}, {0.5, 64, false, true},
                                {1, 8, true, false},    {1, 16, true, false},    {1, 32, false, true},
                                {2, 8, true, false},    {2, 16, true, true},     {2, 32, false, true},
                                {5, 8, true, true},     {5, 16, false, true},    {10, 8, false, true}};
