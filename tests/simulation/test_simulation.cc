@@ -58,7 +58,20 @@ TEST(Simulation, StartsWithTheBodysMassMomentumAndSpin) {
     // L about the origin = m (x v_y - y v_x) + I omega, with I = m R^2 / 2.
     EXPECT_NEAR(totals.angular_momentum[2], mass * (-0.3) + 0.5 * mass * 0.04 * 4, 0.03 * mass);
     EXPECT_EQ(totals.min_J, 1);
+    EXPECT_NEAR(totals.volume, area, tolerance * area);
+    EXPECT_EQ(totals.volume_drift(), 0);
   }
+}
+
+TEST(Simulation, VolumeDriftIsTheMeanOfTheVolumeRatios) {
+  const auto simulation = make(disk_scene(kJelly));
+  while (std::abs(simulation->totals().volume_drift()) < 1e-3 && simulation->frame() < 20) simulation->advance_frame();
+  const Snapshot snapshot = simulation->snapshot();
+  double sum = 0;
+  for (std::size_t p = 0; p < snapshot.size(); ++p) sum += value(*snapshot.find("J"), p);
+  const double drift = sum / static_cast<double>(snapshot.size()) - 1;  // all particles of the disk are equal
+  EXPECT_GT(std::abs(drift), 1e-3);
+  EXPECT_NEAR(simulation->totals().volume_drift(), drift, 1e-6);
 }
 
 TEST(Simulation, PeriodicLengthsAreWholeBlocksWhateverTheNumberOfParticles) {

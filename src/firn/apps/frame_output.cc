@@ -40,6 +40,8 @@ StatsRow row_of(const FinishedFrame& frame) {
   row.elastic_energy = totals.elastic_energy;
   row.gravitational_energy = totals.gravitational_energy;
   row.max_speed = totals.max_speed;
+  row.volume = totals.volume;
+  row.volume_drift = totals.volume_drift();
   row.min_J = totals.min_J;
   row.max_J = totals.max_J;
   row.wall_seconds = frame.report.wall_seconds;

@@ -49,11 +49,12 @@ Totals totals_of(const Particles<Real, dim>& particles, std::size_t p, int model
   totals.momentum = mass * v;
   totals.angular_momentum = mass * (cross(x, v) + affine_spin(particles, p, context));
   totals.kinetic_energy = 0.5 * mass * dot(v, v);
-  totals.elastic_energy = static_cast<double>(particles.real(Field::rest_volume)[p]) *
-                          energy_density<dim>(model, parameters, state.F.e, state.history);
+  totals.rest_volume = particles.real(Field::rest_volume)[p];
+  totals.elastic_energy = totals.rest_volume * energy_density<dim>(model, parameters, state.F.e, state.history);
   totals.gravitational_energy = mass * height_work;
   totals.max_speed = norm(v);
   totals.min_J = totals.max_J = volume_ratio(state, model, parameters);
+  totals.volume = totals.rest_volume * totals.min_J;
   return totals;
 }
 
@@ -67,6 +68,8 @@ Totals& Totals::operator+=(const Totals& other) {
   elastic_energy += other.elastic_energy;
   gravitational_energy += other.gravitational_energy;
   max_speed = std::max(max_speed, other.max_speed);
+  volume += other.volume;
+  rest_volume += other.rest_volume;
   min_J = std::min(min_J, other.min_J);
   max_J = std::max(max_J, other.max_J);
   return *this;
