@@ -37,7 +37,8 @@ void render_run(const RenderOptions& options) {
   std::filesystem::create_directories(target.images());
   std::unique_ptr<Film> film;
   if (options.frame == 0 && scene.render.film && program_exists("ffmpeg")) {
-    film = std::make_unique<Film>(target.film(), scene.render.width, scene.render.height, scene.frame_rate);
+    film = std::make_unique<Film>(target.film(), scene.render.width, scene.render.height,
+                                  scene.render.film_rate_of(scene.frame_rate));
   }
   std::optional<Camera> camera;
   for (std::int64_t frame = options.frame == 0 ? 1 : options.frame;

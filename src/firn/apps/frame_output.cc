@@ -62,7 +62,7 @@ FrameOutput::FrameOutput(const Scene& scene, const RunFolder& folder)
   if (scene.render.film && scene.render.every_nth > 0) {
     if (program_exists("ffmpeg")) {
       film_ = std::make_unique<Film>(folder.film(), scene.render.width, scene.render.height,
-                                     scene.frame_rate / scene.render.every_nth);
+                                     scene.render.film_rate_of(scene.frame_rate / scene.render.every_nth));
     } else {
       log_warning("there is no ffmpeg, so the pictures stay without a film; install the package ffmpeg");
     }

@@ -2,6 +2,7 @@
 
 #include <firn/core/linear_algebra.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -113,7 +114,12 @@ struct RenderSettings {
   std::string color_by = "material";
   std::optional<std::array<double, 2>> range;  ///< of the coloured quantity, in its unit; without it: automatic
   bool film = true;
-  int every_nth = 1;  ///< 0: no pictures
+  std::optional<double> film_rate;  ///< pictures per second of the film
+  int every_nth = 1;                ///< 0: no pictures
+
+  /// Pictures per second of a film whose pictures are taken `rate` times per simulated second: as fast as it happened,
+  /// or in slow motion where nobody could follow.
+  double film_rate_of(double rate) const { return film_rate.value_or(std::min(rate, 60.0)); }
 };
 
 struct OutputSettings {
