@@ -13,7 +13,7 @@ std::string row_text(const std::vector<std::string>& cells) { return fmt::format
 
 std::string range_text(const Gate& gate) {
   if (std::isinf(gate.high)) return fmt::format(">= {:.4g}", gate.low);
-  if (gate.low == -gate.high) return fmt::format("<= {:.3g}", gate.high);
+  if (gate.low == -gate.high) return fmt::format("+-{:.3g}", gate.high);
   return fmt::format("{:.4g} to {:.4g}", gate.low, gate.high);
 }
 

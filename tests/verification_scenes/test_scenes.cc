@@ -63,7 +63,7 @@ TEST(Page, ShowsTablesAndGates) {
   EXPECT_EQ(block_of(check, outcome, control),
             "| cells | error |\n|---|---|\n| 8 | 0.1 |\n\n"
             "| gate | allowed | measured | control: wrong sign |\n|---|---|---|---|\n"
-            "| error | <= 0.2 | 0.1 | 0.7, refused |\n| order | 1.5 to 2.5 | 2 |  |\n");
+            "| error | +-0.2 | 0.1 | 0.7, refused |\n| order | 1.5 to 2.5 | 2 |  |\n");
 }
 
 TEST(Gates, HoldOnlyForNumbersWithin) {
