@@ -167,7 +167,7 @@ TEST(Films, PlayAsFastAsItHappenedUntilNobodyCouldFollow) {
   EXPECT_EQ(usual.film_rate_of(24), 24);
   EXPECT_EQ(usual.film_rate_of(1e6), 60);
   EXPECT_EQ(parse(kMinimal, {"render.film_rate=12"}).render.film_rate_of(1e6), 12);
-  EXPECT_TRUE(matches(error_of(kMinimal, {"render.film_rate=0"}), ".*film_rate must be above 0.*"));
+  EXPECT_TRUE(matches(error_of(kMinimal, {"render.film_rate=0"}), ".*film_rate must be in \\(0, 240\\] 1/s, got 0.*"));
 }
 
 TEST(Materials, PresetsGiveNumbersThatKeysOverride) {

@@ -1,5 +1,6 @@
 #include "verification_scenes/large_wave.h"
 
+#include <firn/state/cell_key.h>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,7 +10,8 @@ namespace firn::test {
 std::vector<std::string> large_wave(int cells, double A) {
   auto overrides = slab(1.0 / cells, 0, {{"bar", 0, 1}});
   for (std::string& text : overrides) {
-    if (text.starts_with("method.periodic")) text = fmt::format("method.periodic=[1, {}]", 4.0 / cells);
+    if (text.starts_with("method.periodic"))
+      text = fmt::format("method.periodic=[1, {}]", double(kBlockSide<2>) / cells);
   }
   overrides.insert(overrides.end(), {fmt::format("body.bar.velocity=[\"2*pi*{}*{}*sin(2*pi*x)\", 0]", A, kWaveSpeed),
                                      fmt::format("end_time={}", kWaveEnd), fmt::format("frame_rate={}", 1 / kWaveEnd)});

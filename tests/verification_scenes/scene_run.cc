@@ -1,6 +1,7 @@
 #include "verification_scenes/scene_run.h"
 
 #include <firn/scene/load_scene.h>
+#include <firn/state/cell_key.h>
 #include <fmt/format.h>
 
 namespace firn::test {
@@ -55,11 +56,10 @@ Vec3d mean_velocity(const ParticleColumns& particles, int body) {
 }
 
 std::vector<std::string> slab(double cell_size, int axis, const std::vector<Piece>& pieces) {
-  constexpr double kBlock = 4;
   const auto pair = [&](double along, double across) {
     return axis == 0 ? fmt::format("[{}, {}]", along, across) : fmt::format("[{}, {}]", across, along);
   };
-  const double width = kBlock * cell_size;
+  const double width = kBlockSide<2> * cell_size;
   std::vector<std::string> overrides = {fmt::format("resolution.cell_size={}", cell_size),
                                         "method.periodic=" + pair(0, width)};
   for (const Piece& piece : pieces) {
