@@ -110,7 +110,8 @@ template <template <class> class Model, class Real, int dim>
 void update_stress(World<Real, dim>& world, std::size_t m, double dt, StepReport& report) {
   auto& material = world.materials[m];
   auto& particles = material.particles;
-  const Model<double> model(material.parameters);
+  ParametersOfOne parameters(material.parameters);
+  const int own_columns = particles.history_count() - static_cast<int>(material.parameters.varied.size());
   const Field gradient = particles.has(Field::grad_v) ? Field::grad_v : Field::affine;
   double wave_modulus = 0, viscosity = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
@@ -119,13 +120,14 @@ void update_stress(World<Real, dim>& world, std::size_t m, double dt, StepReport
       F.e[e] = static_cast<double>(particles.real(Field::strain, e)[p]);
       grad_v.e[e] = static_cast<double>(particles.real(gradient, e)[p]);
     }
-    double history[kMaxHistoryColumns] = {};
+    double history[kMaxHistoryColumns + kMaxVariedParameters] = {};
     for (int h = 0; h < particles.history_count(); ++h) history[h] = static_cast<double>(particles.history(h)[p]);
+    const Model<double> model(parameters.with(history + own_columns));
 
     const auto response = model.update(F, history, grad_v, dt);
 
     for (int e = 0; e < dim * dim; ++e) particles.real(Field::strain, e)[p] = static_cast<Real>(F.e[e]);
-    for (int h = 0; h < particles.history_count(); ++h) particles.history(h)[p] = static_cast<Real>(history[h]);
+    for (int h = 0; h < own_columns; ++h) particles.history(h)[p] = static_cast<Real>(history[h]);
     const auto store = [&](int c, double tau) { particles.real(Field::stress, c)[p] = static_cast<Real>(tau); };
     for (int i = 0; i < dim; ++i) store(i, response.tau(i, i));
     if constexpr (dim == 3) {

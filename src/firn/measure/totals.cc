@@ -32,8 +32,8 @@ Vec3d affine_spin(const Particles<Real, dim>& particles, std::size_t p, const Me
 }
 
 template <class Real, int dim>
-Totals totals_of(const Particles<Real, dim>& particles, std::size_t p, int model, const ModelParameters& parameters,
-                 const MeasureContext<dim>& context) {
+Totals totals_of(const Particles<Real, dim>& particles, std::size_t p, int model, const ModelParameters& shared,
+                 ParametersOfOne& own, const MeasureContext<dim>& context) {
   const double mass = particles.real(Field::mass)[p];
   const Vec<double, dim> at = particles.position(p, context.dx, context.kernel);
   Vec3d x = {}, v = {};
@@ -43,7 +43,8 @@ Totals totals_of(const Particles<Real, dim>& particles, std::size_t p, int model
     v[i] = particles.real(Field::velocity, i)[p];
     height_work -= context.gravity[i] * at[i];
   }
-  const ParticleState<dim> state = particle_state(particles, p);
+  const ParticleState<dim> state = particle_state(particles, p, shared);
+  const ModelParameters& parameters = own.with(state.varied);
   Totals totals;
   totals.mass = mass;
   totals.momentum = mass * v;
@@ -81,7 +82,8 @@ Totals measure_totals(const Particles<Real, dim>& particles, int model, const Mo
   std::vector<Totals> parts((particles.size() + kGrain - 1) / kGrain);
   parallel_chunks(particles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     Totals& part = parts[begin / kGrain];
-    for (std::size_t p = begin; p < end; ++p) part += totals_of(particles, p, model, parameters, context);
+    ParametersOfOne own(parameters);
+    for (std::size_t p = begin; p < end; ++p) part += totals_of(particles, p, model, parameters, own, context);
   });
   Totals totals;
   for (const Totals& part : parts) totals += part;

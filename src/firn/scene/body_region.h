@@ -1,5 +1,6 @@
 #pragma once
 
+#include <firn/geometry/triangle_mesh.h>
 #include <firn/scene/settings.h>
 #include <firn/seeding/region.h>
 
@@ -11,6 +12,9 @@ namespace firn {
 /// about meshes go to the log. Throws Error as read_mesh(), read_polygon() and prepare_mesh() do.
 template <int dim>
 std::unique_ptr<Region<dim>> body_region(const Scene& scene, const BodySettings& body);
+
+/// Where the body's mesh goes, and how large.
+Placement placement_of(const BodySettings& body);
 
 /// Rotation by these angles about x, then y, then z, degrees.
 Mat3d rotation_from_degrees(const Vec3d& degrees);

@@ -4,6 +4,7 @@
 #include <firn/scene/body_region.h>
 #include <firn/scene/build_world.h>
 #include <firn/scene/initial_velocity.h>
+#include <firn/scene/vary_parameters.h>
 #include <firn/seeding/sampling.h>
 #include <fmt/format.h>
 
@@ -76,6 +77,10 @@ WorldPlan plan_of(const Scene& scene, const Regions<dim>& regions) {
           ? *resolution.cell_size
           : std::pow(volume * resolution.particles_per_cell / static_cast<double>(*resolution.particles), 1.0 / dim);
   plan.cell_size = resolution.cell_size ? wanted_cell : fit_to_period<dim>(scene, wanted_cell);
+  for (const MaterialSettings& material : scene.materials) {
+    const std::string refusal = material_refusal(material, plan.cell_size);
+    if (!refusal.empty()) throw Error(ErrorKind::usage, fmt::format("material \"{}\": {}", material.name, refusal));
+  }
   // With a given cell size the particles per cell are asked for, with a given number of particles that number
   // is.
   const double particles_per_volume = resolution.cell_size
@@ -150,15 +155,6 @@ Collider<dim> collider_of(const ColliderSettings& settings) {
   return collider;
 }
 
-ModelParameters parameters_of(const MaterialSettings& material, const ModelInfo& model) {
-  ModelParameters parameters;
-  parameters.density = material.density;
-  for (const Parameter& parameter : model.parameters) {
-    parameters.values.push_back(material.parameters.at(std::string(parameter.name)));
-  }
-  return parameters;
-}
-
 template <int dim>
 Period<dim> period_of(const Scene& scene, double cell_size) {
   Period<dim> period = {};
@@ -183,7 +179,7 @@ BuiltWorld<Real, dim> build_world(const Scene& scene) {
   for (const ColliderSettings& collider : scene.colliders) world.colliders.push_back(collider_of<dim>(collider));
   for (const MaterialSettings& material : scene.materials) {
     const int model = model_number(material.model);
-    world.add_material(material.name, model, parameters_of(material, all_models()[static_cast<std::size_t>(model)]));
+    world.add_material(material.name, model, model_parameters(material, plan.cell_size));
   }
 
   std::uint32_t next_id = 0;
@@ -199,6 +195,8 @@ BuiltWorld<Real, dim> build_world(const Scene& scene) {
                                 next_id, static_cast<std::uint32_t>(b));
       set_initial_velocity(material.particles, first, body, samples.positions, plan.cell_size,
                            world.transfer.affine != 0);
+      vary_parameters<Real, dim>(scene, *scene.find_material(body.material), body,
+                                 {material, first, next_id, samples.positions});
     }
     plan.bodies[b].particles = static_cast<std::int64_t>(samples.positions.size());
     plan.particles += plan.bodies[b].particles;

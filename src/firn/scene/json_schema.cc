@@ -28,6 +28,16 @@ Json list_schema(const Json& items, int least, int most) {
   return {{"type", "array"}, {"items", items}, {"minItems", least}, {"maxItems", most}};
 }
 
+/// The tables of read_variation().
+Json variation_schema() {
+  const Json number = {{"type", "number"}}, text = {{"type", "string"}}, seed = {{"type", "integer"}, {"minimum", 0}};
+  const Json properties = {
+      {"value", number}, {"spread", number}, {"distribution", {{"type", "string"}, {"enum", {"normal", "lognormal"}}}},
+      {"from", number},  {"to", number},     {"attribute", text},
+      {"scale", number}, {"seed", seed}};
+  return {{"type", "object"}, {"additionalProperties", false}, {"properties", properties}};
+}
+
 Json type_schema(const Key& key) {
   const Json number = number_schema(key, "number");
   switch (key.type) {
@@ -37,6 +47,8 @@ Json type_schema(const Key& key) {
       return number_schema(key, "integer");
     case ValueType::number:
       return number;
+    case ValueType::varied:
+      return {{"anyOf", {number, {{"type", "string"}}, variation_schema()}}};
     case ValueType::text:
       return {{"type", "string"}};
     case ValueType::choice:

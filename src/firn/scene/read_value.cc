@@ -2,6 +2,7 @@
 #include <firn/core/expression.h>
 #include <firn/scene/nearest.h>
 #include <firn/scene/read_value.h>
+#include <firn/scene/read_variation.h>
 #include <firn/scene/value_text.h>
 
 #include <fmt/format.h>
@@ -28,6 +29,9 @@ class ValueReader {
       case ValueType::choice:
         return choice();
       case ValueType::number:
+        return number(node_);
+      case ValueType::varied:
+        if (node_.table() || std::holds_alternative<std::string>(node_.value)) return read_variation(key_, node_);
         return number(node_);
       case ValueType::integer:
         return integer();

@@ -45,7 +45,7 @@ std::optional<Value> default_value(const Section& section, const Key& key) {
   Scene scene;
   if (const std::optional<Value> value = key.get(section.add(scene))) return value;
   // A material's number that depends on the model has no value before the model is known.
-  if (key.type == ValueType::number) return Value(key.info.default_value);
+  if (key.type == ValueType::varied) return Value(key.info.default_value);
   return std::nullopt;
 }
 
@@ -75,6 +75,8 @@ std::string type_text(const Key& key, int dimension) {
       return "a whole number";
     case ValueType::number:
       return "a number";
+    case ValueType::varied:
+      return "a number, a formula in quotes or a table";
     case ValueType::text:
       return "text in quotes";
     case ValueType::choice:

@@ -19,6 +19,7 @@ enum class ValueType {
   boolean,
   integer,
   number,
+  varied,  ///< a number, or what makes it differ between the particles of a material
   text,
   choice,
   vector,    ///< one number per dimension
@@ -31,7 +32,8 @@ enum class ValueType {
 
 /// A value of any ValueType. Lists of numbers are stored for 3D (vector and formulas: 3, interval: 2, box: 6 numbers);
 /// a rotation in 2D is the third of its three numbers.
-using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<NumberOrFormula>>;
+using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<NumberOrFormula>,
+                           ParameterVariation>;
 
 /// One key. `info` holds name, unit, range (of each number), help and hint.
 struct Key {

@@ -54,12 +54,29 @@ struct LimitSettings {
   std::optional<Box> box;
 };
 
+/// A model's parameter that differs between the particles of a material; fixed when they are placed.
+struct ParameterVariation {
+  enum class Kind { formula, spread, range, attribute };
+  enum class Distribution { lognormal, normal };
+
+  Kind kind = Kind::formula;
+  std::string text;   ///< the formula of x, y, z (m), or the name of the mesh's attribute
+  double value = 0;   ///< mean of a spread
+  double spread = 0;  ///< standard deviation over the mean
+  Distribution distribution = Distribution::lognormal;  ///< of a spread
+  double from = 0, to = 0;                              ///< of a range, in which each value is as likely
+  std::optional<std::uint64_t> seed;                    ///< of what is random; the scene's without it
+  double scale = 1;                                     ///< factor on the attribute
+  bool operator==(const ParameterVariation&) const = default;
+};
+
 struct MaterialSettings {
   std::string name;
   std::string preset;  ///< "" without one
   std::string model;
   double density = 0;                        ///< kg/m^3
   std::map<std::string, double> parameters;  ///< every parameter of the model, in the unit that the model declares
+  std::map<std::string, ParameterVariation> varied;  ///< of these, what differs between particles
 };
 
 struct BodySettings {

@@ -1,3 +1,4 @@
+#include <firn/scene/read_variation.h>
 #include <firn/scene/value_text.h>
 
 #include <fmt/format.h>
@@ -106,6 +107,7 @@ std::string value_text(const Key& key, const Value& value, int dimension) {
     std::string operator()(double d) const { return number_text(d); }
     std::string operator()(const std::string& s) const { return in_quotes(s); }
     std::string operator()(const std::vector<double>& v) const { return numbers_text(type, v, dimension); }
+    std::string operator()(const ParameterVariation& v) const { return variation_text(v); }
     std::string operator()(const std::vector<NumberOrFormula>& v) const { return formulas_text(v, dimension); }
   };
   return std::visit(Visitor{key.type, dimension}, value);

@@ -4,6 +4,7 @@
 #include <firn/integrators/verbs.h>
 #include <firn/materials/model_info.h>
 #include <firn/measure/output_columns.h>
+#include <firn/scene/vary_parameters.h>
 #include <firn/simulation/runaways.h>
 #include <firn/simulation/simulation.h>
 #include <fmt/format.h>
@@ -105,12 +106,13 @@ class SimulationOf final : public Simulation {
       smallest = smallest == 0 ? each : std::min(smallest, each);
     }
     snapshot.particle_spacing = std::pow(smallest, 1.0 / dim);
+    const std::vector<Parameter> varied = varied_parameters(scene_);
     arena_.execute([&] {
       for (std::size_t m = 0; m < world_->materials.size(); ++m) {
         const auto& material = world_->materials[m];
         const MaterialSettings& settings = scene_.materials[m];
         append_to_snapshot<Real, dim>(snapshot, material.particles, material.model, material.parameters,
-                                      {material.name, settings.model, settings.preset}, world_->grid.dx(),
+                                      {material.name, settings.model, settings.preset, varied}, world_->grid.dx(),
                                       world_->transfer.kernel);
       }
     });
