@@ -1,5 +1,4 @@
 #include <firn/apps/frame_output.h>
-#include <firn/apps/scene_view.h>
 #include <firn/core/log.h>
 #include <firn/io/frame_series.h>
 #include <firn/io/frame_writer.h>
@@ -58,7 +57,10 @@ struct FrameOutput::Files {
 };
 
 FrameOutput::FrameOutput(const Scene& scene, const RunFolder& folder)
-    : scene_(scene), folder_(folder), files_(new Files{StatsTable(folder.stats(), {"parked"}), metadata_of(scene)}) {
+    : scene_(scene),
+      drawing_(scene_),
+      folder_(folder),
+      files_(new Files{StatsTable(folder.stats(), {"parked"}), metadata_of(scene)}) {
   if (scene.render.film && scene.render.every_nth > 0) {
     if (program_exists("ffmpeg")) {
       film_ = std::make_unique<Film>(folder.film(), scene.render.width, scene.render.height,
@@ -137,7 +139,7 @@ void FrameOutput::write(const FinishedFrame& frame) {
 void FrameOutput::draw(const FinishedFrame& frame) {
   const int every = scene_.render.every_nth;
   if (every == 0 || (frame.report.frame - 1) % every != 0) return;
-  View view = scene_view(scene_, frame.snapshot.time);
+  View view = drawing_.view_at(frame.snapshot.time);
   if (!view.camera) {
     if (!camera_) camera_ = automatic_camera(frame.snapshot, view);
     view.camera = camera_;

@@ -73,7 +73,7 @@ double apply_colliders(std::span<const PosedCollider<dim>* const> colliders, std
     const Vec<double, dim> x = node_position<dim>(block, n, dx);
     for (const PosedCollider<dim>* collider : colliders) {
       if (!(collider->distance(x) < 0)) continue;
-      fastest = std::max(fastest, norm(collider->velocity(x)));
+      fastest = std::max(fastest, collider->fastest(x));
       Vec<double, dim> v;
       for (int i = 0; i < dim; ++i) v[i] = node[i];
       const Vec<double, dim> w = collider->admissible(x, v);
@@ -149,7 +149,7 @@ template <class Real, int dim>
 void update_velocity(World<Real, dim>& world, double dt) {
   const VerbTimer timer(world.verb_times, Verb::update_velocity);
   Grid<Real, dim>& grid = world.grid;
-  const BlockColliders<dim> block_colliders(world.colliders, world.t + dt, grid.dx());
+  const BlockColliders<dim> block_colliders(world.colliders, world.t + dt, grid.dx(), 2 * dt);
   Vec<Real, dim> gravity_impulse;
   for (int i = 0; i < dim; ++i) gravity_impulse[i] = static_cast<Real>(dt * world.gravity[i]);
   const auto blocks = grid.node_blocks();

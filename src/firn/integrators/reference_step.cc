@@ -60,7 +60,7 @@ void update_velocity(World<Real, dim>& world, const std::vector<PosedCollider<di
     node.velocity_change = node.velocity - (1 / node.mass) * node.momentum_before;
     for (const auto& collider : colliders) {
       if (!(collider.distance(x) < 0)) continue;
-      world.max_collider_speed = std::max(world.max_collider_speed, norm(collider.velocity(x)));
+      world.max_collider_speed = std::max(world.max_collider_speed, collider.fastest(x));
     }
   }
 }
@@ -169,7 +169,7 @@ StepReport reference_step(World<Real, dim>& world, double dt) {
   const double dx = world.grid.dx();
   const Period<dim>& period = world.grid.period();
   std::vector<PosedCollider<dim>> colliders;
-  for (const auto& collider : world.colliders) colliders.emplace_back(collider, world.t + dt);
+  for (const auto& collider : world.colliders) colliders.emplace_back(collider, world.t + dt, 2 * dt);
 
   if (world.body_force) evaluate_body_force<Real, dim>(world);
   ReferenceGrid<dim> grid;

@@ -79,6 +79,9 @@ Camera automatic_camera(const Snapshot& snapshot, const View& view) {
   add_particles(snapshot, &bounds);
   for (const DrawnBox& box : view.boxes) bounds.add(box.center, norm(box.half_size));
   for (const DrawnSphere& sphere : view.spheres) bounds.add(sphere.center, sphere.radius);
+  for (const DrawnSolid& solid : view.solids) {
+    for (const Vec3d& x : solid.surface->mesh.vertices) bounds.add(solid.at(x), 0);
+  }
   if (bounds.low[0] > bounds.high[0]) bounds.add({}, 1);
   Camera camera;
   camera.up = snapshot.dimension == 2 ? Vec3d{{0, 1, 0}} : normalized(view.up);

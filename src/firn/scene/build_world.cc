@@ -1,8 +1,8 @@
 #include <firn/core/error.h>
-#include <firn/geometry/shapes.h>
 #include <firn/materials/model_info.h>
 #include <firn/scene/body_region.h>
 #include <firn/scene/build_world.h>
+#include <firn/scene/collider_shape.h>
 #include <firn/scene/initial_velocity.h>
 #include <firn/scene/vary_parameters.h>
 #include <firn/seeding/sampling.h>
@@ -21,12 +21,6 @@ Vec<double, dim> cut(const Vec3d& v) {
   Vec<double, dim> r;
   for (int i = 0; i < dim; ++i) r[i] = v[i];
   return r;
-}
-
-template <int dim>
-Mat<double, dim> rotation_of(const Vec3d& degrees) {
-  if constexpr (dim == 3) return rotation_from_degrees(degrees);
-  if constexpr (dim == 2) return plane_rotation_from_degrees(degrees);
 }
 
 template <int dim>
@@ -134,25 +128,12 @@ TransferSettings transfer_of(const MethodSettings& method) {
 }
 
 template <int dim>
-Collider<dim> collider_of(const ColliderSettings& settings) {
-  Collider<dim> collider;
-  collider.name = settings.name;
-  switch (settings.shape) {
-    case ColliderSettings::Shape::half_space:
-      collider.shape = std::make_shared<HalfSpace<dim>>(cut<dim>(settings.normal));
-      break;
-    case ColliderSettings::Shape::box:
-      collider.shape = std::make_shared<Box<dim>>(0.5 * cut<dim>(settings.size));
-      break;
-    case ColliderSettings::Shape::sphere:
-      collider.shape = std::make_shared<Sphere<dim>>(settings.radius);
-      break;
+std::vector<Collider<dim>> colliders_of(const Scene& scene, double cell_size) {
+  std::vector<Collider<dim>> colliders;
+  for (const ColliderSettings& collider : scene.colliders) {
+    colliders.push_back(make_collider<dim>(scene, collider, cell_size));
   }
-  collider.motion = {cut<dim>(settings.position), rotation_of<dim>(settings.rotation), cut<dim>(settings.velocity),
-                     spin_of<dim>(settings.angular_velocity)};
-  collider.contact = static_cast<Contact>(settings.contact);
-  collider.friction = settings.friction;
-  return collider;
+  return colliders;
 }
 
 template <int dim>
@@ -167,7 +148,11 @@ Period<dim> period_of(const Scene& scene, double cell_size) {
 }  // namespace
 
 WorldPlan plan_world(const Scene& scene) {
-  return scene.dimension == 2 ? plan_of<2>(scene, regions_of<2>(scene)) : plan_of<3>(scene, regions_of<3>(scene));
+  const WorldPlan plan =
+      scene.dimension == 2 ? plan_of<2>(scene, regions_of<2>(scene)) : plan_of<3>(scene, regions_of<3>(scene));
+  if (scene.dimension == 2) warn_of_thin_colliders<2>(colliders_of<2>(scene, plan.cell_size), plan.cell_size);
+  if (scene.dimension == 3) warn_of_thin_colliders<3>(colliders_of<3>(scene, plan.cell_size), plan.cell_size);
+  return plan;
 }
 
 template <class Real, int dim>
@@ -176,7 +161,8 @@ BuiltWorld<Real, dim> build_world(const Scene& scene) {
   WorldPlan plan = plan_of<dim>(scene, regions);
   World<Real, dim> world(plan.cell_size, transfer_of(scene.method), period_of<dim>(scene, plan.cell_size));
   world.gravity = cut<dim>(scene.gravity);
-  for (const ColliderSettings& collider : scene.colliders) world.colliders.push_back(collider_of<dim>(collider));
+  world.colliders = colliders_of<dim>(scene, plan.cell_size);
+  warn_of_thin_colliders<dim>(world.colliders, plan.cell_size);
   for (const MaterialSettings& material : scene.materials) {
     const int model = model_number(material.model);
     world.add_material(material.name, model, model_parameters(material, plan.cell_size));

@@ -14,8 +14,6 @@ namespace {
 
 constexpr double kEarthGravity = 9.81;  // m/s^2
 
-Vec3d up_direction(const Scene& scene) { return scene.up == Scene::Up::y ? Vec3d{{0, 1, 0}} : Vec3d{{0, 0, 1}}; }
-
 void complete_root(SceneDraft& draft) {
   Scene& scene = draft.scene;
   if (scene.dimension == 2 && scene.up == Scene::Up::z) draft.fail("", 0, "up", "up must be \"y\" in a 2D scene");
@@ -94,16 +92,6 @@ void complete_names(const SceneDraft& draft, std::string_view section, std::vect
   }
 }
 
-void check_file(const SceneDraft& draft, std::size_t index, std::string_view key, const std::string& file) {
-  const std::filesystem::path path = draft.scene.locate(file);
-  std::error_code ignored;
-  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored)) return;
-  draft.fail("body", index, key,
-             fmt::format("{} {} is not a file (looked for {}); paths start at the scene file's folder", key,
-                         in_quotes(file), std::filesystem::absolute(path, ignored).lexically_normal().string()),
-             ErrorKind::files);
-}
-
 void check_body(const SceneDraft& draft, std::size_t i) {
   const Scene& scene = draft.scene;
   const BodySettings& body = scene.bodies[i];
@@ -119,8 +107,8 @@ void check_body(const SceneDraft& draft, std::size_t i) {
   if (!flat && body.shape == BodySettings::Shape::disk) {
     draft.fail("body", i, "shape", "shape \"disk\" needs dimension = 2; in 3D use \"sphere\"");
   }
-  if (!body.mesh.empty()) check_file(draft, i, "mesh", body.mesh);
-  if (!body.polygon.empty()) check_file(draft, i, "polygon", body.polygon);
+  if (!body.mesh.empty()) check_file(draft, "body", i, "mesh", body.mesh);
+  if (!body.polygon.empty()) check_file(draft, "body", i, "polygon", body.polygon);
   if (!scene.find_material(body.material)) {
     std::vector<std::string> names;
     for (const MaterialSettings& material : scene.materials) names.push_back(material.name);
@@ -132,19 +120,6 @@ void check_body(const SceneDraft& draft, std::size_t i) {
 void complete_bodies(SceneDraft& draft) {
   complete_names(draft, "body", draft.scene.bodies);
   for (std::size_t i = 0; i < draft.scene.bodies.size(); ++i) check_body(draft, i);
-}
-
-void complete_colliders(SceneDraft& draft) {
-  Scene& scene = draft.scene;
-  complete_names(draft, "collider", scene.colliders);
-  for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
-    ColliderSettings& collider = scene.colliders[i];
-    if (collider.shape != ColliderSettings::Shape::half_space) continue;
-    if (!draft.has("collider", i, "normal")) collider.normal = up_direction(scene);
-    if (norm(collider.normal) == 0) draft.fail("collider", i, "normal", "normal must not be zero");
-    // A unit vector stays as it is, so that a resolved scene read back is the same scene.
-    if (std::abs(norm(collider.normal) - 1) > 1e-15) collider.normal = normalized(collider.normal);
-  }
 }
 
 void complete_pictures(SceneDraft& draft) {
@@ -164,12 +139,27 @@ void complete_pictures(SceneDraft& draft) {
 
 }  // namespace
 
+Vec3d up_direction(const Scene& scene) { return scene.up == Scene::Up::y ? Vec3d{{0, 1, 0}} : Vec3d{{0, 0, 1}}; }
+
+void check_file(const SceneDraft& draft, std::string_view section, std::size_t index, std::string_view key,
+                const std::string& file) {
+  const std::filesystem::path path = draft.scene.locate(file);
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored)) return;
+  draft.fail(section, index, key,
+             fmt::format("{} {} is not a file (looked for {}); paths start at the scene file's folder", key,
+                         in_quotes(file), std::filesystem::absolute(path, ignored).lexically_normal().string()),
+             ErrorKind::files);
+}
+
 void complete_scene(SceneDraft& draft) {
   complete_root(draft);
   complete_method(draft);
   complete_limits(draft);
   complete_materials(draft);
   complete_bodies(draft);
+  complete_names(draft, "part", draft.scene.parts);
+  complete_names(draft, "collider", draft.scene.colliders);
   complete_colliders(draft);
   complete_pictures(draft);
 }

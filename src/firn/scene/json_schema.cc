@@ -38,6 +38,8 @@ Json variation_schema() {
   return {{"type", "object"}, {"additionalProperties", false}, {"properties", properties}};
 }
 
+Json keyframe_schema();
+
 Json type_schema(const Key& key) {
   const Json number = number_schema(key, "number");
   switch (key.type) {
@@ -65,8 +67,22 @@ Json type_schema(const Key& key) {
       return list_schema(number, 2, 2);
     case ValueType::box:
       return list_schema(list_schema(number, 2, 3), 2, 2);
+    case ValueType::texts:
+      return {{"type", "array"}, {"items", {{"type", "string"}}}};
+    case ValueType::keyframes:
+      return {{"type", "array"}, {"items", keyframe_schema()}};
   }
   return {};
+}
+
+Json keyframe_schema() {
+  Json properties = Json::object(), required = Json::array();
+  for (const Key& key : keyframe_keys()) {
+    Json& schema = properties[std::string(key.info.name)] = type_schema(key);
+    schema["description"] = fmt::format("{}{}", key.info.help, key.required ? " Required." : "");
+    if (key.required) required.push_back(key.info.name);
+  }
+  return {{"type", "object"}, {"additionalProperties", false}, {"properties", properties}, {"required", required}};
 }
 
 Json key_schema(const Section& section, const Key& key) {

@@ -86,6 +86,22 @@ struct FieldTraits<std::array<double, 2>> {
 };
 
 template <>
+struct FieldTraits<std::vector<std::string>> {
+  static constexpr ValueType type = ValueType::texts;
+  static Value to_value(const std::vector<std::string>& field) { return field; }
+  static std::vector<std::string> from_value(const Value& value) { return std::get<std::vector<std::string>>(value); }
+};
+
+template <>
+struct FieldTraits<std::vector<KeyframeSettings>> {
+  static constexpr ValueType type = ValueType::keyframes;
+  static Value to_value(const std::vector<KeyframeSettings>& field) { return field; }
+  static std::vector<KeyframeSettings> from_value(const Value& value) {
+    return std::get<std::vector<KeyframeSettings>>(value);
+  }
+};
+
+template <>
 struct FieldTraits<LimitSettings::Box> {
   static constexpr ValueType type = ValueType::box;
   static Value to_value(const LimitSettings::Box& box) {
@@ -122,7 +138,7 @@ class KeyBuilder {
     };
     key_.get = [member](const void* object) -> std::optional<Value> {
       const Field& field = static_cast<const Object*>(object)->*member;
-      if constexpr (std::is_same_v<Field, std::string>) {
+      if constexpr (requires { field.empty(); }) {
         return field.empty() ? std::nullopt : std::optional<Value>(field);
       } else if constexpr (std::is_same_v<Field, T>) {
         return FieldTraits<T>::to_value(field);

@@ -95,6 +95,10 @@ std::string type_text(const Key& key, int dimension) {
       return "a list of 2 numbers, the lower first";
     case ValueType::box:
       return "two corners, [[lowest], [highest]]";
+    case ValueType::texts:
+      return "a list of texts in quotes";
+    case ValueType::keyframes:
+      return "a list of tables { time, position, rotation, scale }";
   }
   return "";
 }

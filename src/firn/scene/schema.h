@@ -28,12 +28,14 @@ enum class ValueType {
   rotation,  ///< one number in 2D, three in 3D
   interval,  ///< two numbers, the lower first
   box,       ///< two vectors: lowest and highest corner
+  texts,     ///< a list of names
+  keyframes  ///< a list of tables with the keys of keyframe_keys()
 };
 
 /// A value of any ValueType. Lists of numbers are stored for 3D (vector and formulas: 3, interval: 2, box: 6 numbers);
 /// a rotation in 2D is the third of its three numbers.
 using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<NumberOrFormula>,
-                           ParameterVariation>;
+                           ParameterVariation, std::vector<std::string>, std::vector<KeyframeSettings>>;
 
 /// One key. `info` holds name, unit, range (of each number), help and hint.
 struct Key {
@@ -78,6 +80,8 @@ struct Section {
 
 /// In the order in which a scene is read and written.
 std::span<const Section> schema();
+/// Of one element of a list of keyframes; fields of KeyframeSettings.
+std::span<const Key> keyframe_keys();
 /// Null if there is none.
 const Section* find_section(std::string_view name);
 

@@ -203,9 +203,17 @@ Section output() {
 }  // namespace
 
 std::vector<Section> make_schema() {
-  return {
-      root(),   resolution(), method(), limits(), make_material_section(), make_body_section(), make_collider_section(),
-      camera(), render(),     output()};
+  return {root(),
+          resolution(),
+          method(),
+          limits(),
+          make_material_section(),
+          make_body_section(),
+          make_part_section(),
+          make_collider_section(),
+          camera(),
+          render(),
+          output()};
 }
 
 }  // namespace firn

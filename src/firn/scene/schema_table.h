@@ -13,6 +13,7 @@ std::vector<Section> make_schema();
 Section make_material_section();
 
 Section make_body_section();
+Section make_part_section();
 Section make_collider_section();
 
 }  // namespace firn

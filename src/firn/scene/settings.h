@@ -101,19 +101,62 @@ struct BodySettings {
   std::optional<Vec3d> color;                    ///< linear RGB
 };
 
-struct ColliderSettings {
-  enum class Shape { half_space, box, sphere };
-  enum class Contact { sticky, slip, separate };
+/// A solid that colliders consist of.
+struct ShapeSettings {
+  enum class Shape {
+    half_space,
+    box,
+    rounded_box,
+    sphere,
+    capsule,
+    cylinder,
+    cone,
+    torus,
+    polygon,
+    height_field,
+    mesh,
+    union_,
+    intersection,
+    difference
+  };
 
   std::string name;
   Shape shape = Shape::half_space;
-  Vec3d normal = {};            ///< of a half space, out of the solid; unit length
-  Vec3d size = {};              ///< edge lengths of a box, m
-  double radius = 0;            ///< of a sphere, m
-  Vec3d position = {};          ///< centre, or a point of the half space's surface, m
-  Vec3d rotation = {};          ///< degrees, about x, then y, then z
+  Vec3d normal = {};               ///< of a half space, out of the solid; unit length
+  Vec3d size = {};                 ///< edge lengths of a box, extent of a height field, m
+  double radius = 0;               ///< m
+  double top_radius = 0;           ///< of a cone, m
+  double tube_radius = 0;          ///< of a torus, m
+  double length = 0;               ///< along `axis`, m
+  Vec3d axis = {};                 ///< of capsule, cylinder, cone and torus; any length but zero
+  std::string file;                ///< of polygon, height field and mesh, as written in the scene
+  double scale = 1;                ///< of the coordinates of polygon and mesh
+  double depth = 0;                ///< of a height field below its lowest point, m
+  std::vector<std::string> parts;  ///< names of Scene::parts
+  bool inverted = false;
+  Vec3d position = {};  ///< centre, or a point of the half space's surface, m
+  Vec3d rotation = {};  ///< degrees, about x, then y, then z
+};
+
+struct PartSettings : ShapeSettings {};
+
+/// What is not set is the collider's own `position` and `rotation` and a scale of 1; complete_scene() sets it.
+struct KeyframeSettings {
+  double time = 0;                ///< s
+  std::optional<Vec3d> position;  ///< m
+  std::optional<Vec3d> rotation;  ///< degrees, about x, then y, then z
+  std::optional<double> scale;
+};
+
+struct ColliderSettings : ShapeSettings {
+  enum class Contact { sticky, slip, separate };
+  enum class Interpolation { linear, smooth };
+
   Vec3d velocity = {};          ///< m/s
   Vec3d angular_velocity = {};  ///< rad/s, about `position`
+  std::vector<KeyframeSettings> keyframes;
+  std::string trajectory;  ///< file, as written in the scene; "" without
+  Interpolation interpolation = Interpolation::linear;
   Contact contact = Contact::separate;
   double friction = 0;
   std::optional<Vec3d> color;  ///< linear RGB
@@ -165,6 +208,7 @@ struct Scene {
   LimitSettings limits;
   std::vector<MaterialSettings> materials;
   std::vector<BodySettings> bodies;
+  std::vector<PartSettings> parts;
   std::vector<ColliderSettings> colliders;
   CameraSettings camera;
   RenderSettings render;
@@ -174,6 +218,8 @@ struct Scene {
 
   /// A path of the scene (mesh, polygon) as the program must open it: relative ones start at the scene file's folder.
   std::filesystem::path locate(const std::string& path_in_scene) const { return file.parent_path() / path_in_scene; }
+  /// Null if there is no such part.
+  const PartSettings* find_part(std::string_view name) const;
   /// Null if there is no such material.
   const MaterialSettings* find_material(std::string_view name) const;
 };

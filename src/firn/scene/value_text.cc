@@ -52,6 +52,16 @@ std::string join_quoted(const Names& names) {
   return text;
 }
 
+std::string keyframe_text(const KeyframeSettings& frame, int dimension) {
+  std::string text;
+  for (const Key& key : keyframe_keys()) {
+    const std::optional<Value> value = key.get(&frame);
+    if (!value) continue;
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", key.info.name, value_text(key, *value, dimension));
+  }
+  return fmt::format("{{ {} }}", text);
+}
+
 }  // namespace
 
 std::string number_text(double value) {
@@ -109,6 +119,12 @@ std::string value_text(const Key& key, const Value& value, int dimension) {
     std::string operator()(const std::vector<double>& v) const { return numbers_text(type, v, dimension); }
     std::string operator()(const ParameterVariation& v) const { return variation_text(v); }
     std::string operator()(const std::vector<NumberOrFormula>& v) const { return formulas_text(v, dimension); }
+    std::string operator()(const std::vector<std::string>& v) const { return fmt::format("[{}]", join_quoted(v)); }
+    std::string operator()(const std::vector<KeyframeSettings>& v) const {
+      std::string text;
+      for (const KeyframeSettings& frame : v) text += (text.empty() ? "" : ", ") + keyframe_text(frame, dimension);
+      return fmt::format("[{}]", text);
+    }
   };
   return std::visit(Visitor{key.type, dimension}, value);
 }
