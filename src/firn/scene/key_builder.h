@@ -139,7 +139,7 @@ class KeyBuilder {
     key_.get = [member](const void* object) -> std::optional<Value> {
       const Field& field = static_cast<const Object*>(object)->*member;
       if constexpr (requires { field.empty(); }) {
-        return field.empty() ? std::nullopt : std::optional<Value>(field);
+        return field.empty() ? std::nullopt : std::optional<Value>(FieldTraits<T>::to_value(field));
       } else if constexpr (std::is_same_v<Field, T>) {
         return FieldTraits<T>::to_value(field);
       } else {
