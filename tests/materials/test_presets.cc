@@ -2,7 +2,6 @@
 
 #include <firn/materials/friction_angle.h>
 #include <firn/materials/model_info.h>
-#include <firn/materials/point_driver.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,32 +10,15 @@
 #include <set>
 #include <string>
 
+#include "support/preset_points.h"
+
 namespace firn {
 namespace {
 
 constexpr double kGravity = 9.81;  // m/s^2
 
-double number(std::string_view preset_name, std::string_view parameter, double otherwise = 0) {
-  const Preset& preset = *find_preset(preset_name);
-  if (parameter == "density") return preset.density;
-  for (const Preset::Value& value : preset.values) {
-    if (value.parameter == parameter) return value.value;
-  }
-  return otherwise;
-}
-
-std::vector<PointState> drive(std::string_view preset_name, PointPath path, double strain, double pressure = 0,
-                              double rate = 1) {
-  const Preset& preset = *find_preset(preset_name);
-  PointRequest request;
-  request.model = model_number(preset.model);
-  request.parameters.density = preset.density;
-  for (const Parameter& p : find_model(preset.model)->parameters) {
-    request.parameters.values.push_back(number(preset_name, p.name));
-  }
-  request.path = path, request.strain = strain, request.pressure = pressure, request.rate = rate;
-  return drive_point(request);
-}
+using test::drive;
+using test::number;
 
 /// Largest tension or compression (by sign) of a bar pulled or squeezed to a strain, Pa.
 double strength(std::string_view preset, double strain) {

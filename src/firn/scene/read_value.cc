@@ -104,14 +104,9 @@ class ValueReader {
   }
 
   double number(const Node& node) const {
-    double value = 0;
-    if (const auto* whole = std::get_if<std::int64_t>(&node.value)) {
-      value = static_cast<double>(*whole);
-    } else if (const auto* real = std::get_if<double>(&node.value)) {
-      value = *real;
-    } else {
-      wrong_type();
-    }
+    const std::optional<double> given = node.number();
+    if (!given) wrong_type();
+    const double value = *given;
     if (!in_range(key_.info, value)) out_of_range(number_text(value));
     return value;
   }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace firn {
 namespace {
@@ -107,14 +108,9 @@ class VariationReader {
 
   double number(std::string_view name) const {
     const Node& node = at(name);
-    double value = 0;
-    if (const auto* whole = std::get_if<std::int64_t>(&node.value)) {
-      value = static_cast<double>(*whole);
-    } else if (const auto* real = std::get_if<double>(&node.value)) {
-      value = *real;
-    } else {
-      fail(fmt::format("{} must be a number, got {}", name, node.describe()));
-    }
+    const std::optional<double> given = node.number();
+    if (!given) fail(fmt::format("{} must be a number, got {}", name, node.describe()));
+    const double value = *given;
     if (!std::isfinite(value)) fail(fmt::format("{} must be a finite number, got {}", name, number_text(value)));
     return value;
   }

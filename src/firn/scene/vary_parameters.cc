@@ -8,6 +8,7 @@
 #include <firn/scene/vary_parameters.h>
 #include <firn/seeding/random.h>
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,13 +24,6 @@ constexpr std::size_t kGrain = 1 << 10;
 
 /// Value at a position (m) for a particle's id.
 using ValueAt = std::function<double(const Vec3d& x, std::uint32_t id)>;
-
-/// FNV-1a: parameters with one seed get numbers of their own.
-std::uint64_t hash_of(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return hash;
-}
 
 /// Standard normal, by Box and Muller 1958.
 double normal_number(Random& random) {
@@ -58,9 +52,9 @@ ValueAt value_of(const Scene& scene, const BodySettings& body, std::string_view 
       return [painted = std::make_shared<PaintedField>(scene, body, v.text), scale = v.scale](
                  const Vec3d& x, std::uint32_t) { return scale * painted->at(x); };
     default:
-      return [v, stream = Random(v.seed.value_or(scene.seed) ^ hash_of(name)).bits()](const Vec3d&, std::uint32_t id) {
-        return random_value(v, Random(stream ^ Random(id).bits()));
-      };
+      // With the name, so that parameters with one seed get numbers of their own.
+      return [v, stream = XXH64(name.data(), name.size(), v.seed.value_or(scene.seed))](
+                 const Vec3d&, std::uint32_t id) { return random_value(v, Random(stream ^ Random(id).bits())); };
   }
 }
 
