@@ -146,6 +146,13 @@ struct KeyframeSettings {
   std::optional<Vec3d> position;  ///< m
   std::optional<Vec3d> rotation;  ///< degrees, about x, then y, then z
   std::optional<double> scale;
+
+  friend bool operator==(const KeyframeSettings& a, const KeyframeSettings& b) {
+    const auto same = [](const std::optional<Vec3d>& u, const std::optional<Vec3d>& v) {
+      return u && v ? std::equal(u->e, u->e + 3, v->e) : u.has_value() == v.has_value();
+    };
+    return a.time == b.time && same(a.position, b.position) && same(a.rotation, b.rotation) && a.scale == b.scale;
+  }
 };
 
 struct ColliderSettings : ShapeSettings {
