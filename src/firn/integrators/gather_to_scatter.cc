@@ -39,7 +39,7 @@ class Pass {
     if (m_ == 0) std::fill_n(grid.tile(b), grid.tile_size() * static_cast<std::size_t>(grid.layers()), Real(0));
     if (material_.block_at[b] < 0) return;
     const auto own = static_cast<std::size_t>(material_.block_at[b]);
-    BlockNodes<Real, dim> nodes(world_, colliders_, b);
+    BlockNodes<Real, dim> nodes(world_, colliders_, dt_, b);
     const std::uint32_t particles = particles_.block_size(own);
     const ParticleStorage passing = passing_storage(particles_.layout());
     std::vector<Leaver>& leavers = particles_.leavers(own);

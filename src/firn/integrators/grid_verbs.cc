@@ -62,19 +62,22 @@ Vec<double, dim> node_position(std::uint64_t block, int n, double dx) {
 }
 
 /// Makes the velocities of nodes inside colliders admissible and counts the momentum that they lose. Returns the
-/// largest speed of a collider at such a node.
+/// largest speed of a collider at such a node, or at one that it can reach within `ahead` seconds.
 template <class Real, int dim>
 double apply_colliders(std::span<const StepCollider<dim>* const> colliders, std::uint64_t block, double dx, Real* nodes,
-                       Real* change, std::vector<ColliderLoad>& loads) {
+                       Real* change, double ahead, std::vector<ColliderLoad>& loads) {
   double fastest = 0;
   for (int n = 0; n < kBlockNodes<dim>; ++n) {
     Real* node = nodes + n * kNodeWidth;
     if (!(node[kMassSlot] > std::numeric_limits<Real>::min())) continue;
     const Vec<double, dim> x = node_position<dim>(block, n, dx);
     for (const StepCollider<dim>* near : colliders) {
-      const PosedCollider<dim>& collider = near->after;
-      if (!(collider.distance(x) < 0)) continue;
-      fastest = std::max(fastest, collider.fastest(x));
+      // Nodes and particles are where they are at the beginning of the step, and so must be what they meet: then
+      // contact is the same in every frame of reference.
+      const PosedCollider<dim>& collider = near->before;
+      const double distance = collider.distance(x), speed = near->after.fastest(x);
+      if (distance < ahead * speed) fastest = std::max(fastest, speed);
+      if (!(distance < 0)) continue;
       Vec<double, dim> v, lost;
       for (int i = 0; i < dim; ++i) v[i] = node[i];
       const Vec<double, dim> w = collider.admissible(x, v);
@@ -116,17 +119,20 @@ void update_velocity(World<Real, dim>& world, double dt) {
     const auto near = block_colliders.near(blocks[g], 0);
     if (!near.empty()) {
       speeds[g].loads.resize(world.colliders.size());
-      speeds[g].collider = apply_colliders<Real, dim>(near, blocks[g], grid.dx(), nodes, change, speeds[g].loads);
+      speeds[g].collider =
+          apply_colliders<Real, dim>(near, blocks[g], grid.dx(), nodes, change, 3 * dt, speeds[g].loads);
     }
     speeds[g].grid = speeds_by_mass<Real, dim>(nodes, nodes);
     if (change != nullptr) speeds[g].change = speeds_by_mass<Real, dim>(nodes, change);
   });
+  world.block_speeds.clear();
   int heaviest = std::numeric_limits<int>::min();
   for (const Speeds& block : speeds) heaviest = std::max(heaviest, block.grid.exponent);
   double collider_speed = 0, grid_speed = 0, grid_change = 0;
   for (const Speeds& block : speeds) {
     collider_speed = std::max(collider_speed, block.collider);
     add_loads(block.loads, world.collider_loads);
+    world.block_speeds.push_back(std::sqrt(block.grid.all));
     if (block.grid.exponent == std::numeric_limits<int>::min()) continue;
     grid_speed = std::max(grid_speed, block.grid.largest(heaviest));
     if (grid.has_velocity_change()) grid_change = std::max(grid_change, block.change.largest(heaviest));
