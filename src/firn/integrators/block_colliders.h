@@ -19,9 +19,11 @@ struct StepCollider {
   std::size_t place;  ///< in World::colliders
   PosedCollider<dim> before, after;
 
+  bool moves() const { return after.collider().keyframes || !after.collider().motion.is_static(); }
+
   /// How far points of the world within `radius` of x move in the collider's frame during the step, m.
   double motion(const Vec<double, dim>& x, double radius) const {
-    if (!after.collider().keyframes && after.collider().motion.is_static()) return 0;
+    if (!moves()) return 0;
     Mat<double, dim> turn;
     double square = 0;
     for (int e = 0; e < dim * dim; ++e) {

@@ -10,12 +10,28 @@ constexpr int kTurns = 8, kStops = 4;
 /// Of a cell: the least step of the search for the surface, and how far a particle is pushed out in one step.
 constexpr double kSearchStep = 1.0 / 16, kPush = 0.1;
 
+/// Whether a way in the frame may meet the surface. Written so that a way that is not finite does not, and the particle
+/// is found by whoever looks for failed ones.
+template <int dim>
+bool in_reach(double distance, const Vec<double, dim>& way) {
+  return distance >= 0 && distance * distance <= dim * dot(way, way);
+}
+
 }  // namespace
 
 template <class Real, int dim>
 bool ParticleContact<Real, dim>::apply(MovingParticle<dim>& particle, std::vector<ColliderLoad>& loads) const {
-  const bool held = hold_inside(particle, loads);
-  const bool stopped = swept_ && sweep(particle, loads);
+  // Most particles of a block near a collider are neither inside nor can get there.
+  const Vec<double, dim> target = particle.x + dt_ * particle.u;
+  bool inside = false, near = false;
+  for (const Near* collider : colliders_) {
+    const Vec<double, dim> from = collider->before.to_frame(particle.x);
+    const double distance = collider->before.collider().shape->distance(from);
+    inside = inside || distance < 0;
+    near = near || in_reach(distance, collider->moves() ? collider->after.to_frame(target) - from : dt_ * particle.u);
+  }
+  const bool held = inside && hold_inside(particle, loads);
+  const bool stopped = swept_ && (near || held) && sweep(particle, loads);
   return held || stopped;
 }
 
@@ -51,14 +67,11 @@ bool ParticleContact<Real, dim>::hold_inside(MovingParticle<dim>& particle, std:
 template <class Real, int dim>
 auto ParticleContact<Real, dim>::first_collision(const Vec<double, dim>& x, const Vec<double, dim>& target) const
     -> std::optional<Collision> {
-  const double root = std::sqrt(static_cast<double>(dim));
   std::optional<Collision> first;
   for (const Near* near : colliders_) {
     const Vec<double, dim> from = near->before.to_frame(x), to = near->after.to_frame(target);
     const Shape<dim>& shape = *near->after.collider().shape;
-    const double distance = shape.distance(from);
-    // Written so that a way that is not finite goes on, to be found by whoever looks for failed particles.
-    if (distance < 0 || !(distance <= root * norm(to - from))) continue;
+    if (!in_reach(shape.distance(from), to - from)) continue;
     const double per_unit = 1 / near->after.pose().scale;
     const auto hit = first_hit(shape, from, to, {0.5 * margin_ * per_unit, kSearchStep * dx_ * per_unit});
     if (!hit || (first && first->fraction <= hit->fraction)) continue;
