@@ -25,6 +25,7 @@ struct Collider {
   Contact contact = Contact::separate;
   double friction = 0;                                        ///< Coulomb coefficient; of slip and separate only
   std::shared_ptr<const KeyframeMotion<dim>> keyframes = {};  ///< instead of `motion`; may be null
+  bool push_out = false;                                      ///< whether particles inside are moved to the surface
 
   Pose<dim> pose_at(double t) const { return keyframes ? keyframes->pose_at(t) : motion.pose_at(t); }
 };
@@ -38,11 +39,13 @@ class PosedCollider {
 
   /// Signed distance of world position x, m; negative inside.
   double distance(const Vec<double, dim>& x) const;
+  /// Outward unit normal at the surface point nearest to world position x.
+  Vec<double, dim> normal(const Vec<double, dim>& x) const;
   /// Velocity of the collider at x, m/s.
   Vec<double, dim> velocity(const Vec<double, dim>& x) const;
 
-  /// Speed of the collider at x now or, where keyframes may change it, `ahead` later: the larger, m/s. Time steps follow
-  /// from what was, so that a collider that sets off must be seen one step early.
+  /// Speed of the collider at x now or, where keyframes may change it, `ahead` later: the larger, m/s. Time steps
+  /// follow from what was, so that a collider that sets off must be seen one step early.
   double fastest(const Vec<double, dim>& x) const;
 
   /// The velocity that material at x, inside the collider, may have instead of v (Stomakhin et al. 2013, section 8):
@@ -50,9 +53,21 @@ class PosedCollider {
   /// up to friction |vn| from its tangential part. Points outside keep v.
   Vec<double, dim> admissible(const Vec<double, dim>& x, const Vec<double, dim>& v) const;
 
- private:
-  Vec<double, dim> to_frame(const Vec<double, dim>& x) const;
+  /// The same for material at x that touches the collider's surface where its outward unit normal is n, wherever x is.
+  Vec<double, dim> admissible(const Vec<double, dim>& x, const Vec<double, dim>& n, const Vec<double, dim>& v) const;
 
+  /// What the contact leaves of a motion relative to the collider, into or out of a surface with outward unit normal n:
+  /// any unit, any frame that moves with the collider.
+  Vec<double, dim> slide(const Vec<double, dim>& n, const Vec<double, dim>& relative) const;
+
+  /// Where world position x is in the frame of the shape, whose unit of length is `scale` metres, and back.
+  Vec<double, dim> to_frame(const Vec<double, dim>& x) const;
+  Vec<double, dim> to_world(const Vec<double, dim>& y) const;
+
+  const Collider<dim>& collider() const { return *collider_; }
+  const Pose<dim>& pose() const { return pose_; }
+
+ private:
   const Collider<dim>* collider_;
   Pose<dim> pose_;
   Pose<dim> later_;

@@ -1,3 +1,4 @@
+#include <firn/integrators/particle_contact.h>
 #include <firn/integrators/reference_step.h>
 #include <firn/integrators/verbs.h>
 #include <firn/materials/models-inl.h>
@@ -39,15 +40,20 @@ void evaluate_body_force(World<Real, dim>& world) {
   }
 }
 
-template <int dim>
-Vec<double, dim> admissible(const std::vector<PosedCollider<dim>>& colliders, const Vec<double, dim>& x,
-                            Vec<double, dim> v) {
-  for (const auto& collider : colliders) v = collider.admissible(x, v);
+/// The admissible velocity at x; colliders take what a mass loses by it.
+template <class Real, int dim>
+Vec<double, dim> admissible(World<Real, dim>& world, const std::vector<StepCollider<dim>>& colliders, double mass,
+                            const Vec<double, dim>& x, Vec<double, dim> v) {
+  for (const StepCollider<dim>& collider : colliders) {
+    const Vec<double, dim> before = v;
+    v = collider.before.admissible(x, v);
+    world.collider_loads[collider.place].add(mass * (before - v), x - collider.before.pose().origin);
+  }
   return v;
 }
 
 template <class Real, int dim>
-void update_velocity(World<Real, dim>& world, const std::vector<PosedCollider<dim>>& colliders, double dt,
+void update_velocity(World<Real, dim>& world, const std::vector<StepCollider<dim>>& colliders, double dt,
                      ReferenceGrid<dim>& grid) {
   world.max_collider_speed = world.max_speed = 0;
   for (auto& [index, node] : grid) {
@@ -55,30 +61,36 @@ void update_velocity(World<Real, dim>& world, const std::vector<PosedCollider<di
     if (!(node.mass > static_cast<double>(std::numeric_limits<Real>::min()))) continue;
     Vec<double, dim> x;
     for (int d = 0; d < dim; ++d) x[d] = world.grid.dx() * static_cast<double>(index[static_cast<std::size_t>(d)]);
-    node.velocity = admissible(colliders, x, (1 / node.mass) * node.momentum + dt * world.gravity);
+    node.velocity = admissible(world, colliders, node.mass, x, (1 / node.mass) * node.momentum + dt * world.gravity);
     world.max_speed = std::max(world.max_speed, norm(node.velocity));
     node.velocity_change = node.velocity - (1 / node.mass) * node.momentum_before;
     for (const auto& collider : colliders) {
-      if (!(collider.distance(x) < 0)) continue;
-      world.max_collider_speed = std::max(world.max_collider_speed, collider.fastest(x));
+      const double speed = collider.after.fastest(x);
+      if (!(collider.before.distance(x) < 3 * dt * speed)) continue;
+      world.max_collider_speed = std::max(world.max_collider_speed, speed);
     }
   }
 }
 
 /// Colliders act on v and u; then x_p += dt u.
 template <class Real, int dim>
-void move(World<Real, dim>& world, std::size_t m, const std::vector<PosedCollider<dim>>& colliders, double dt,
+void move(World<Real, dim>& world, std::size_t m, const std::vector<StepCollider<dim>>& colliders, double dt,
           const std::vector<Vec<double, dim>>& moves_with, StepReport& report) {
   auto& material = world.materials[m];
   auto& particles = material.particles;
   const double dx = world.grid.dx();
+  std::vector<const StepCollider<dim>*> all;
+  for (const StepCollider<dim>& collider : colliders) all.push_back(&collider);
+  const ParticleContact<Real, dim> contact(world, dt, all);
   material.max_speed = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
-    const auto x = particles.position(p, dx, world.grid.kernel());
-    Vec<double, dim> v;
+    MovingParticle<dim> particle = {particles.position(p, dx, world.grid.kernel()),
+                                    static_cast<double>(particles.real(Field::mass)[p]),
+                                    {},
+                                    moves_with[p]};
+    Vec<double, dim>&v = particle.v, &u = particle.u;
     for (int i = 0; i < dim; ++i) v[i] = static_cast<double>(particles.real(Field::velocity, i)[p]);
-    v = admissible(colliders, x, v);
-    const Vec<double, dim> u = admissible(colliders, x, moves_with[p]);
+    contact.apply(particle, world.collider_loads);
     for (int i = 0; i < dim; ++i) particles.real(Field::velocity, i)[p] = static_cast<Real>(v[i]);
     material.max_speed = std::max(material.max_speed, norm(v));
 
@@ -168,8 +180,9 @@ StepReport reference_step(World<Real, dim>& world, double dt) {
   StepReport report;
   const double dx = world.grid.dx();
   const Period<dim>& period = world.grid.period();
-  std::vector<PosedCollider<dim>> colliders;
-  for (const auto& collider : world.colliders) colliders.emplace_back(collider, world.t + dt, 2 * dt);
+  const BlockColliders<dim> posed(world.colliders, world.t, dt, dx);
+  const std::vector<StepCollider<dim>>& colliders = posed.all();
+  world.collider_loads.resize(world.colliders.size());
 
   if (world.body_force) evaluate_body_force<Real, dim>(world);
   ReferenceGrid<dim> grid;

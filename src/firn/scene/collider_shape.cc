@@ -206,6 +206,7 @@ Collider<dim> make_collider(const Scene& scene, const ColliderSettings& settings
   set_motion<dim>(scene, settings, collider);
   collider.contact = static_cast<Contact>(settings.contact);
   collider.friction = settings.friction;
+  collider.push_out = settings.push_out;
   return collider;
 }
 
@@ -221,7 +222,7 @@ void warn_of_thin_colliders(const std::vector<Collider<dim>>& colliders, double 
     if (!(thickness < 1.95 * cell_size)) continue;
     log_warning(
         fmt::format("collider \"{}\" is about {:.2g} m thick, {:.2g} cells: what is on one side is felt on the "
-                    "other, and fast particles may cross it; make it two cells thick, or cells at most {:.2g} m",
+                    "other; make it two cells thick, or cells at most {:.2g} m",
                     collider.name, thickness, thickness / cell_size, 0.5 * thickness));
   }
 }

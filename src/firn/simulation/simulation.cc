@@ -52,6 +52,7 @@ class SimulationOf final : public Simulation {
     if (prepared.failure) fail(*prepared.failure, 0);
     report_.particles = particle_count();
     report_.limit = "start";
+    report_.colliders = collider_reports(0);
   }
 
   double time() const override { return world_->t; }
@@ -196,6 +197,8 @@ class SimulationOf final : public Simulation {
 
   std::optional<ParticleFailure> try_frame() {
     std::optional<ParticleFailure> failure;
+    const double start = world_->t;
+    world_->collider_loads.assign(world_->colliders.size(), {});
     arena_.execute([&] { failure = try_steps(frame_time(frame_ + 1)); });
     if (failure) return failure;
     arena_.execute([&] { guard_.park_far(*world_); });
@@ -204,7 +207,27 @@ class SimulationOf final : public Simulation {
     report_.time = world_->t;
     report_.particles = particle_count();
     report_.parked = guard_.parked();
+    report_.colliders = collider_reports(world_->t - start);
     return std::nullopt;
+  }
+
+  /// @param duration how long the loads have been counted, s; 0 for not at all
+  std::vector<ColliderReport> collider_reports(double duration) const {
+    std::vector<ColliderReport> reports(world_->colliders.size());
+    for (std::size_t k = 0; k < reports.size() && duration > 0; ++k) {
+      const ColliderLoad& load = world_->collider_loads[k];
+      reports[k].force = (1 / duration) * load.impulse;
+      reports[k].torque = (1 / duration) * load.angular_impulse;
+      reports[k].caught = load.caught;
+    }
+    arena_.execute([&] {
+      for (const auto& material : world_->materials) {
+        const auto inside = measure_penetration<Real, dim>(material.particles, world_->grid.dx(),
+                                                           world_->transfer.kernel, world_->colliders, world_->t);
+        for (std::size_t k = 0; k < reports.size(); ++k) reports[k].inside += inside[k];
+      }
+    });
+    return reports;
   }
 
   std::optional<ParticleFailure> try_steps(double until) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <firn/integrators/time_step.h>
+#include <firn/measure/penetration.h>
 #include <firn/measure/totals.h>
 #include <firn/scene/build_world.h>
 #include <firn/scene/settings.h>
@@ -9,8 +10,17 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace firn {
+
+/// How material and a collider stand to each other. In 2D forces are per metre of thickness.
+struct ColliderReport {
+  Vec3d force = {};         ///< of the material on the collider, mean since the frame before, N
+  Vec3d torque = {};        ///< the same about the collider's own origin, its `position`, wherever that moves, N m
+  Penetration inside = {};  ///< particles inside it now
+  std::int64_t caught = 0;  ///< see ColliderLoad, since the frame before
+};
 
 /// What one frame came to.
 struct FrameReport {
@@ -23,6 +33,7 @@ struct FrameReport {
   std::int64_t parked = 0;  ///< since the start
   int retries = 0;          ///< times that the frame was taken back and computed with smaller steps
   double wall_seconds = 0;
+  std::vector<ColliderReport> colliders = {};  ///< in the order of the scene
 };
 
 /// A scene being simulated, whatever its dimension and precision: the one face of the library that the command line,
