@@ -45,7 +45,21 @@ StatsRow row_of(const FinishedFrame& frame) {
   row.max_J = totals.max_J;
   row.wall_seconds = frame.report.wall_seconds;
   row.further = {static_cast<double>(frame.report.parked)};
+  for (const ColliderForce& collider : frame.report.colliders) {
+    for (const double f : collider.force.e) row.further.push_back(f);
+    for (const double m : collider.torque.e) row.further.push_back(m);
+  }
   return row;
+}
+
+std::vector<std::string> further_columns(const Scene& scene) {
+  std::vector<std::string> names = {"parked"};
+  for (const ColliderSettings& collider : scene.colliders) {
+    for (const char* column : {"force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z"}) {
+      names.push_back(fmt::format("{}.{}", collider.name, column));
+    }
+  }
+  return names;
 }
 
 }  // namespace
@@ -60,7 +74,7 @@ FrameOutput::FrameOutput(const Scene& scene, const RunFolder& folder)
     : scene_(scene),
       drawing_(scene_),
       folder_(folder),
-      files_(new Files{StatsTable(folder.stats(), {"parked"}), metadata_of(scene)}) {
+      files_(new Files{StatsTable(folder.stats(), further_columns(scene_)), metadata_of(scene)}) {
   if (scene.render.film && scene.render.every_nth > 0) {
     if (program_exists("ffmpeg")) {
       film_ = std::make_unique<Film>(folder.film(), scene.render.width, scene.render.height,

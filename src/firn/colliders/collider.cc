@@ -6,7 +6,8 @@ namespace firn {
 
 template <int dim>
 PosedCollider<dim>::PosedCollider(const Collider<dim>& collider, double t, double ahead)
-    : collider_(&collider), pose_(collider.pose_at(t)),
+    : collider_(&collider),
+      pose_(collider.pose_at(t)),
       later_(collider.keyframes && ahead > 0 ? collider.pose_at(t + ahead) : pose_),
       inverse_(transpose(pose_.rotation)) {
   if (pose_.scale != 1) inverse_ = (1 / pose_.scale) * inverse_;
@@ -15,6 +16,11 @@ PosedCollider<dim>::PosedCollider(const Collider<dim>& collider, double t, doubl
 template <int dim>
 Vec<double, dim> PosedCollider<dim>::to_frame(const Vec<double, dim>& x) const {
   return inverse_ * (x - pose_.origin);
+}
+
+template <int dim>
+Vec<double, dim> PosedCollider<dim>::to_world(const Vec<double, dim>& y) const {
+  return pose_.origin + pose_.scale * (pose_.rotation * y);
 }
 
 template <int dim>
@@ -37,10 +43,14 @@ template <int dim>
 Vec<double, dim> PosedCollider<dim>::admissible(const Vec<double, dim>& x, const Vec<double, dim>& v) const {
   const Vec<double, dim> in_frame = to_frame(x);
   if (!(collider_->shape->distance(in_frame) < 0)) return v;
+  return admissible(x, pose_.rotation * collider_->shape->normal(in_frame), v);
+}
+
+template <int dim>
+Vec<double, dim> PosedCollider<dim>::admissible(const Vec<double, dim>& x, const Vec<double, dim>& n,
+                                                const Vec<double, dim>& v) const {
   const Vec<double, dim> v_co = velocity(x);
   if (collider_->contact == Contact::sticky) return v_co;
-
-  const Vec<double, dim> n = pose_.rotation * collider_->shape->normal(in_frame);
   const Vec<double, dim> relative = v - v_co;
   const double vn = dot(relative, n);
   if (vn >= 0 && collider_->contact == Contact::separate) return v;

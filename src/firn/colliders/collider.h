@@ -41,8 +41,8 @@ class PosedCollider {
   /// Velocity of the collider at x, m/s.
   Vec<double, dim> velocity(const Vec<double, dim>& x) const;
 
-  /// Speed of the collider at x now or, where keyframes may change it, `ahead` later: the larger, m/s. Time steps follow
-  /// from what was, so that a collider that sets off must be seen one step early.
+  /// Speed of the collider at x now or, where keyframes may change it, `ahead` later: the larger, m/s. Time steps
+  /// follow from what was, so that a collider that sets off must be seen one step early.
   double fastest(const Vec<double, dim>& x) const;
 
   /// The velocity that material at x, inside the collider, may have instead of v (Stomakhin et al. 2013, section 8):
@@ -50,9 +50,17 @@ class PosedCollider {
   /// up to friction |vn| from its tangential part. Points outside keep v.
   Vec<double, dim> admissible(const Vec<double, dim>& x, const Vec<double, dim>& v) const;
 
- private:
-  Vec<double, dim> to_frame(const Vec<double, dim>& x) const;
+  /// The same for material at x that touches the collider's surface where its outward unit normal is n, wherever x is.
+  Vec<double, dim> admissible(const Vec<double, dim>& x, const Vec<double, dim>& n, const Vec<double, dim>& v) const;
 
+  /// Where world position x is in the frame of the shape, whose unit of length is `scale` metres, and back.
+  Vec<double, dim> to_frame(const Vec<double, dim>& x) const;
+  Vec<double, dim> to_world(const Vec<double, dim>& y) const;
+
+  const Collider<dim>& collider() const { return *collider_; }
+  const Pose<dim>& pose() const { return pose_; }
+
+ private:
   const Collider<dim>* collider_;
   Pose<dim> pose_;
   Pose<dim> later_;

@@ -29,6 +29,7 @@ struct BlockReport {
   double wave_speed = 0;                          ///< m/s
   double kinematic_viscosity = 0;                 ///< m^2/s
   std::unique_ptr<ParticleFailure> failure = {};  ///< the block's first
+  std::vector<ColliderLoad> loads = {};           ///< of each collider, if any is near
 
   /// Notes the failure of particle p of these columns, unless there is one already.
   template <class Real, int dim>
@@ -36,16 +37,18 @@ struct BlockReport {
                     std::uint32_t p, const BlockPlace<dim>& where, std::string_view cause);
 };
 
-/// Puts the reports of all blocks into the material's speeds and the step's report.
+/// Puts the reports of all blocks into the material's speeds, the loads of colliders and the step's report.
 template <class Real, int dim>
-void combine(MaterialSet<Real, dim>& material, std::vector<BlockReport>& blocks, bool speeds, bool waves,
+void combine(World<Real, dim>& world, std::size_t m, std::vector<BlockReport>& blocks, bool speeds, bool waves,
              StepReport& report) {
+  MaterialSet<Real, dim>& material = world.materials[m];
   double max_speed = 0, wave_speed = 0, viscosity = 0;
   for (BlockReport& block : blocks) {
     max_speed = std::max(max_speed, block.max_speed);
     wave_speed = std::max(wave_speed, block.wave_speed);
     viscosity = std::max(viscosity, block.kinematic_viscosity);
     if (block.failure && !report.failure) report.failure = *block.failure;
+    add_loads(block.loads, world.collider_loads);
   }
   if (speeds) material.max_speed = max_speed;
   if (waves) {
@@ -92,34 +95,49 @@ void BlockReport::note_failure(const World<Real, dim>& world, std::size_t materi
   for (int e = 0; e < dim * dim; ++e) failure->strain.push_back(static_cast<double>(columns.strain[e][p]));
 }
 
-/// Applies the colliders near a block to its particles' velocities.
+/// Applies the colliders near a block to its particles' velocities, and counts the momentum that they take.
 template <class Real, int dim>
 class ColliderConstraint final : public ParticleConstraint<Real, dim> {
  public:
   ColliderConstraint(const Grid<Real, dim>& grid, const Index<dim>& origin,
-                     std::span<const PosedCollider<dim>* const> colliders)
+                     std::span<const StepCollider<dim>* const> colliders)
       : grid_(grid), origin_(origin), colliders_(colliders) {}
+
+  /// Where to count from now on; one load for each collider of the world.
+  void count_in(std::vector<ColliderLoad>& loads) { loads_ = &loads; }
 
   void apply(const ParticleColumns<Real, dim>& particles, std::uint32_t first, std::uint32_t count,
              Real* const (&v)[dim], Real* const (&u)[dim]) const override {
     for (std::uint32_t lane = 0; lane < count; ++lane) {
       const auto x = position_in_block<Real, dim>(particles, first + lane, origin_, grid_.dx(), grid_.kernel());
-      for (const PosedCollider<dim>* collider : colliders_) {
-        if (!(collider->distance(x) < 0)) continue;
-        for (Real* const(*velocity)[dim] : {&v, &u}) {
-          Vec<double, dim> w;
-          for (int i = 0; i < dim; ++i) w[i] = (*velocity)[i][lane];
-          w = collider->admissible(x, w);
-          for (int i = 0; i < dim; ++i) (*velocity)[i][lane] = static_cast<Real>(w[i]);
-        }
+      for (const StepCollider<dim>* collider : colliders_) {
+        if (!(collider->after.distance(x) < 0)) continue;
+        constrain(collider->after, x, u, lane);
+        const Vec<double, dim> lost = constrain(collider->after, x, v, lane);
+        (*loads_)[collider->place].add(static_cast<double>(particles.mass[first + lane]) * lost,
+                                       x - collider->after.pose().origin);
       }
     }
   }
 
  private:
+  /// Returns what the velocity loses.
+  static Vec<double, dim> constrain(const PosedCollider<dim>& collider, const Vec<double, dim>& x,
+                                    Real* const (&velocity)[dim], std::uint32_t lane) {
+    Vec<double, dim> w, lost;
+    for (int i = 0; i < dim; ++i) w[i] = static_cast<double>(velocity[i][lane]);
+    const Vec<double, dim> admissible = collider.admissible(x, w);
+    for (int i = 0; i < dim; ++i) {
+      velocity[i][lane] = static_cast<Real>(admissible[i]);
+      lost[i] = w[i] - static_cast<double>(velocity[i][lane]);
+    }
+    return lost;
+  }
+
   const Grid<Real, dim>& grid_;
   const Index<dim>& origin_;
-  std::span<const PosedCollider<dim>* const> colliders_;
+  std::span<const StepCollider<dim>* const> colliders_;
+  std::vector<ColliderLoad>* loads_ = nullptr;
 };
 
 /// Everything that G2P needs of one block of the grid, whichever material it is for.
@@ -143,7 +161,13 @@ class BlockNodes {
   const Index<dim>& origin() const { return origin_; }
 
   /// @param first_place place in the block of the first particle that is gathered
-  GatherTask<Real, dim> task(const World<Real, dim>& world, double dt, std::uint32_t first_place) const {
+  /// @param loads what colliders take from the particles is added here; stays empty where none is near
+  GatherTask<Real, dim> task(const World<Real, dim>& world, double dt, std::uint32_t first_place,
+                             std::vector<ColliderLoad>& loads) {
+    if (!near_.empty()) {
+      loads.resize(world.colliders.size());
+      constraint_.count_in(loads);
+    }
     return {velocity_, change_,        world.grid.dx(),
             dt,        world.transfer, world.grid.period(),
             origin_,   first_place,    near_.empty() ? nullptr : &constraint_};
@@ -181,7 +205,7 @@ class BlockNodes {
 
   static constexpr int kLargestTile = tile_nodes<dim>(Kernel::cubic) * kNodeWidth;
   Index<dim> origin_;
-  std::vector<const PosedCollider<dim>*> near_;
+  std::vector<const StepCollider<dim>*> near_;
   ColliderConstraint<Real, dim> constraint_;
   alignas(64) Real velocity_[kLargestTile];
   alignas(64) Real change_[kLargestTile];

@@ -39,7 +39,7 @@ class Pass {
     if (m_ == 0) std::fill_n(grid.tile(b), grid.tile_size() * static_cast<std::size_t>(grid.layers()), Real(0));
     if (material_.block_at[b] < 0) return;
     const auto own = static_cast<std::size_t>(material_.block_at[b]);
-    const BlockNodes<Real, dim> nodes(world_, colliders_, b);
+    BlockNodes<Real, dim> nodes(world_, colliders_, b);
     const std::uint32_t particles = particles_.block_size(own);
     const ParticleStorage passing = passing_storage(particles_.layout());
     std::vector<Leaver>& leavers = particles_.leavers(own);
@@ -50,7 +50,7 @@ class Pass {
       const auto columns = particles_.columns(own, first, passing);
       particles_.prefetch_kept(own, first + kChunk);
       const std::size_t left_before = leavers.size();
-      const GatherReport gathered = gather_(columns, count, nodes.task(world_, dt_, first), leavers);
+      const GatherReport gathered = gather_(columns, count, nodes.task(world_, dt_, first, report.loads), leavers);
       const StressReport updated =
           update_(material_.parameters, material_columns<Real, dim>(columns, particles_.history_count()), 0, count,
                   static_cast<Real>(dt_));
@@ -110,7 +110,7 @@ class Pass {
 template <class Real, int dim>
 void gather_to_scatter(World<Real, dim>& world, double dt, double next_dt, StepReport& report) {
   const VerbTimer timer(world.verb_times, Verb::gather_to_scatter);
-  const BlockColliders<dim> colliders(world.colliders, world.t + dt, world.grid.dx());
+  const BlockColliders<dim> colliders(world.colliders, world.t, dt, world.grid.dx());
   const std::size_t blocks = world.grid.particle_blocks().size();
   // Material by material, so that every tile sums its particles in the order in which scatter would.
   for (std::size_t m = 0; m < world.materials.size(); ++m) {
@@ -118,7 +118,7 @@ void gather_to_scatter(World<Real, dim>& world, double dt, double next_dt, StepR
     Pass<Real, dim> pass(world, m, colliders, dt, next_dt);
     std::vector<BlockReport> reports(blocks);
     parallel_each(blocks, [&](std::size_t b) { pass.run(b, reports[b]); });
-    combine(material, reports, true, true, report);
+    combine(world, m, reports, true, true, report);
 
     const auto arrivals = material.particles.route();
     std::vector<std::uint64_t> keys;

@@ -61,26 +61,30 @@ Vec<double, dim> node_position(std::uint64_t block, int n, double dx) {
   return x;
 }
 
-/// Makes the velocities of nodes inside colliders admissible. Returns the largest speed of a collider at such a node.
+/// Makes the velocities of nodes inside colliders admissible and counts the momentum that they lose. Returns the
+/// largest speed of a collider at such a node.
 template <class Real, int dim>
-double apply_colliders(std::span<const PosedCollider<dim>* const> colliders, std::uint64_t block, double dx,
-                       Real* nodes, Real* change) {
+double apply_colliders(std::span<const StepCollider<dim>* const> colliders, std::uint64_t block, double dx, Real* nodes,
+                       Real* change, std::vector<ColliderLoad>& loads) {
   double fastest = 0;
   for (int n = 0; n < kBlockNodes<dim>; ++n) {
     Real* node = nodes + n * kNodeWidth;
     if (!(node[kMassSlot] > std::numeric_limits<Real>::min())) continue;
     const Vec<double, dim> x = node_position<dim>(block, n, dx);
-    for (const PosedCollider<dim>* collider : colliders) {
-      if (!(collider->distance(x) < 0)) continue;
-      fastest = std::max(fastest, collider->fastest(x));
-      Vec<double, dim> v;
+    for (const StepCollider<dim>* near : colliders) {
+      const PosedCollider<dim>& collider = near->after;
+      if (!(collider.distance(x) < 0)) continue;
+      fastest = std::max(fastest, collider.fastest(x));
+      Vec<double, dim> v, lost;
       for (int i = 0; i < dim; ++i) v[i] = node[i];
-      const Vec<double, dim> w = collider->admissible(x, v);
+      const Vec<double, dim> w = collider.admissible(x, v);
       for (int i = 0; i < dim; ++i) {
         const Real new_v = static_cast<Real>(w[i]);
         if (change != nullptr) change[n * kNodeWidth + i] += new_v - node[i];
+        lost[i] = v[i] - static_cast<double>(new_v);
         node[i] = new_v;
       }
+      loads[near->place].add(static_cast<double>(node[kMassSlot]) * lost, x - collider.pose().origin);
     }
   }
   return fastest;
@@ -92,13 +96,15 @@ template <class Real, int dim>
 void update_velocity(World<Real, dim>& world, double dt) {
   const VerbTimer timer(world.verb_times, Verb::update_velocity);
   Grid<Real, dim>& grid = world.grid;
-  const BlockColliders<dim> block_colliders(world.colliders, world.t + dt, grid.dx(), 2 * dt);
+  const BlockColliders<dim> block_colliders(world.colliders, world.t, dt, grid.dx());
+  world.collider_loads.resize(world.colliders.size());
   Vec<Real, dim> gravity_impulse;
   for (int i = 0; i < dim; ++i) gravity_impulse[i] = static_cast<Real>(dt * world.gravity[i]);
   const auto blocks = grid.node_blocks();
   struct Speeds {
     double collider = 0;
     SpeedsByMass grid, change;
+    std::vector<ColliderLoad> loads = {};
   };
   std::vector<Speeds> speeds(blocks.size());
   parallel_each(blocks.size(), [&](std::size_t g) {
@@ -108,7 +114,10 @@ void update_velocity(World<Real, dim>& world, double dt) {
     if (change != nullptr) sum_tiles(grid, g, 1, change);
     momentum_to_velocity<Real, dim>(nodes, change, gravity_impulse);
     const auto near = block_colliders.near(blocks[g], 0);
-    if (!near.empty()) speeds[g].collider = apply_colliders<Real, dim>(near, blocks[g], grid.dx(), nodes, change);
+    if (!near.empty()) {
+      speeds[g].loads.resize(world.colliders.size());
+      speeds[g].collider = apply_colliders<Real, dim>(near, blocks[g], grid.dx(), nodes, change, speeds[g].loads);
+    }
     speeds[g].grid = speeds_by_mass<Real, dim>(nodes, nodes);
     if (change != nullptr) speeds[g].change = speeds_by_mass<Real, dim>(nodes, change);
   });
@@ -117,6 +126,7 @@ void update_velocity(World<Real, dim>& world, double dt) {
   double collider_speed = 0, grid_speed = 0, grid_change = 0;
   for (const Speeds& block : speeds) {
     collider_speed = std::max(collider_speed, block.collider);
+    add_loads(block.loads, world.collider_loads);
     if (block.grid.exponent == std::numeric_limits<int>::min()) continue;
     grid_speed = std::max(grid_speed, block.grid.largest(heaviest));
     if (grid.has_velocity_change()) grid_change = std::max(grid_change, block.change.largest(heaviest));

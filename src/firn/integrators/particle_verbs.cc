@@ -62,12 +62,12 @@ template <class Real, int dim>
 void gather(World<Real, dim>& world, double dt, StepReport& report) {
   const VerbTimer timer(world.verb_times, Verb::gather);
   const GatherBlock<Real, dim> gather_block = gather_function<Real, dim>(world.transfer);
-  const BlockColliders<dim> colliders(world.colliders, world.t + dt, world.grid.dx());
+  const BlockColliders<dim> colliders(world.colliders, world.t, dt, world.grid.dx());
   const std::size_t blocks = world.grid.particle_blocks().size();
   std::vector<std::vector<BlockReport>> reports(world.materials.size());
   for (auto& blocks_of_material : reports) blocks_of_material.resize(blocks);
   parallel_each(blocks, [&](std::size_t b) {
-    const BlockNodes<Real, dim> nodes(world, colliders, b);
+    BlockNodes<Real, dim> nodes(world, colliders, b);
     for (std::size_t m = 0; m < world.materials.size(); ++m) {
       auto& material = world.materials[m];
       if (material.block_at[b] < 0) continue;
@@ -75,7 +75,7 @@ void gather(World<Real, dim>& world, double dt, StepReport& report) {
       BlockReport& block = reports[m][b];
       material.particles.for_each_chunk(own, [&](const auto& columns, std::uint32_t first, std::uint32_t count) {
         const GatherReport gathered =
-            gather_block(columns, count, nodes.task(world, dt, first), material.particles.leavers(own));
+            gather_block(columns, count, nodes.task(world, dt, first, block.loads), material.particles.leavers(own));
         block.max_speed = std::max(block.max_speed, gathered.max_speed);
         if (gathered.failed != GatherReport::kNone) {
           block.template note_failure<Real, dim>(world, m, columns, gathered.failed - first,
@@ -86,7 +86,7 @@ void gather(World<Real, dim>& world, double dt, StepReport& report) {
     }
   });
   for (std::size_t m = 0; m < world.materials.size(); ++m) {
-    combine(world.materials[m], reports[m], true, false, report);
+    combine(world, m, reports[m], true, false, report);
   }
 }
 
@@ -112,7 +112,7 @@ void update_stress(World<Real, dim>& world, double dt, StepReport& report) {
         }
       });
     });
-    combine(material, reports, false, true, report);
+    combine(world, m, reports, false, true, report);
   }
 }
 

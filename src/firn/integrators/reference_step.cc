@@ -39,10 +39,15 @@ void evaluate_body_force(World<Real, dim>& world) {
   }
 }
 
-template <int dim>
-Vec<double, dim> admissible(const std::vector<PosedCollider<dim>>& colliders, const Vec<double, dim>& x,
-                            Vec<double, dim> v) {
-  for (const auto& collider : colliders) v = collider.admissible(x, v);
+/// The admissible velocity at x; colliders take what a mass loses by it.
+template <class Real, int dim>
+Vec<double, dim> admissible(World<Real, dim>& world, const std::vector<PosedCollider<dim>>& colliders, double mass,
+                            const Vec<double, dim>& x, Vec<double, dim> v) {
+  for (std::size_t k = 0; k < colliders.size(); ++k) {
+    const Vec<double, dim> before = v;
+    v = colliders[k].admissible(x, v);
+    world.collider_loads[k].add(mass * (before - v), x - colliders[k].pose().origin);
+  }
   return v;
 }
 
@@ -55,7 +60,7 @@ void update_velocity(World<Real, dim>& world, const std::vector<PosedCollider<di
     if (!(node.mass > static_cast<double>(std::numeric_limits<Real>::min()))) continue;
     Vec<double, dim> x;
     for (int d = 0; d < dim; ++d) x[d] = world.grid.dx() * static_cast<double>(index[static_cast<std::size_t>(d)]);
-    node.velocity = admissible(colliders, x, (1 / node.mass) * node.momentum + dt * world.gravity);
+    node.velocity = admissible(world, colliders, node.mass, x, (1 / node.mass) * node.momentum + dt * world.gravity);
     world.max_speed = std::max(world.max_speed, norm(node.velocity));
     node.velocity_change = node.velocity - (1 / node.mass) * node.momentum_before;
     for (const auto& collider : colliders) {
@@ -77,8 +82,8 @@ void move(World<Real, dim>& world, std::size_t m, const std::vector<PosedCollide
     const auto x = particles.position(p, dx, world.grid.kernel());
     Vec<double, dim> v;
     for (int i = 0; i < dim; ++i) v[i] = static_cast<double>(particles.real(Field::velocity, i)[p]);
-    v = admissible(colliders, x, v);
-    const Vec<double, dim> u = admissible(colliders, x, moves_with[p]);
+    v = admissible(world, colliders, static_cast<double>(particles.real(Field::mass)[p]), x, v);
+    const Vec<double, dim> u = admissible(world, colliders, 0, x, moves_with[p]);
     for (int i = 0; i < dim; ++i) particles.real(Field::velocity, i)[p] = static_cast<Real>(v[i]);
     material.max_speed = std::max(material.max_speed, norm(v));
 
@@ -170,6 +175,7 @@ StepReport reference_step(World<Real, dim>& world, double dt) {
   const Period<dim>& period = world.grid.period();
   std::vector<PosedCollider<dim>> colliders;
   for (const auto& collider : world.colliders) colliders.emplace_back(collider, world.t + dt, 2 * dt);
+  world.collider_loads.resize(world.colliders.size());
 
   if (world.body_force) evaluate_body_force<Real, dim>(world);
   ReferenceGrid<dim> grid;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <firn/colliders/collider.h>
+#include <firn/colliders/collider_load.h>
 #include <firn/materials/model_parameters.h>
 #include <firn/state/grid.h>
 #include <firn/state/particles.h>
@@ -61,6 +62,8 @@ struct World {
   Grid<Real, dim> grid;
   std::vector<MaterialSet<Real, dim>> materials;
   std::vector<Collider<dim>> colliders;
+  /// What each collider has taken; steps only add to it.
+  std::vector<ColliderLoad> collider_loads;
   Vec<double, dim> gravity = {};  ///< m/s^2
   BodyForce<dim> body_force;      ///< may be empty; set it before materials are added
   double t = 0;                   ///< s

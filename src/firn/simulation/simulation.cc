@@ -52,6 +52,7 @@ class SimulationOf final : public Simulation {
     if (prepared.failure) fail(*prepared.failure, 0);
     report_.particles = particle_count();
     report_.limit = "start";
+    report_.colliders.resize(scene_.colliders.size());
   }
 
   double time() const override { return world_->t; }
@@ -196,6 +197,8 @@ class SimulationOf final : public Simulation {
 
   std::optional<ParticleFailure> try_frame() {
     std::optional<ParticleFailure> failure;
+    const double start = world_->t;
+    world_->collider_loads.assign(world_->colliders.size(), {});
     arena_.execute([&] { failure = try_steps(frame_time(frame_ + 1)); });
     if (failure) return failure;
     arena_.execute([&] { guard_.park_far(*world_); });
@@ -204,7 +207,16 @@ class SimulationOf final : public Simulation {
     report_.time = world_->t;
     report_.particles = particle_count();
     report_.parked = guard_.parked();
+    report_.colliders = collider_forces(world_->t - start);
     return std::nullopt;
+  }
+
+  std::vector<ColliderForce> collider_forces(double duration) const {
+    std::vector<ColliderForce> forces;
+    for (const ColliderLoad& load : world_->collider_loads) {
+      forces.push_back({(1 / duration) * load.impulse, (1 / duration) * load.angular_impulse});
+    }
+    return forces;
   }
 
   std::optional<ParticleFailure> try_steps(double until) {

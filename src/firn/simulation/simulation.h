@@ -9,8 +9,15 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace firn {
+
+/// How the material has acted on a collider since the frame before, on average. In 2D per metre of thickness.
+struct ColliderForce {
+  Vec3d force = {};   ///< N
+  Vec3d torque = {};  ///< about the collider's own origin, its `position`, wherever that moves, N m
+};
 
 /// What one frame came to.
 struct FrameReport {
@@ -23,6 +30,7 @@ struct FrameReport {
   std::int64_t parked = 0;  ///< since the start
   int retries = 0;          ///< times that the frame was taken back and computed with smaller steps
   double wall_seconds = 0;
+  std::vector<ColliderForce> colliders = {};  ///< in the order of the scene
 };
 
 /// A scene being simulated, whatever its dimension and precision: the one face of the library that the command line,
