@@ -29,6 +29,11 @@ double PosedCollider<dim>::distance(const Vec<double, dim>& x) const {
 }
 
 template <int dim>
+Vec<double, dim> PosedCollider<dim>::normal(const Vec<double, dim>& x) const {
+  return pose_.rotation * collider_->shape->normal(to_frame(x));
+}
+
+template <int dim>
 Vec<double, dim> PosedCollider<dim>::velocity(const Vec<double, dim>& x) const {
   return pose_.velocity_at(x);
 }

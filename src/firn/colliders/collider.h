@@ -4,6 +4,7 @@
 #include <firn/geometry/keyframe_motion.h>
 #include <firn/geometry/shape.h>
 
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -25,6 +26,9 @@ struct Collider {
   Contact contact = Contact::separate;
   double friction = 0;                                        ///< Coulomb coefficient; of slip and separate only
   std::shared_ptr<const KeyframeMotion<dim>> keyframes = {};  ///< instead of `motion`; may be null
+  /// How thick its walls are where they are thin (wall_thickness, times the smallest scale of its motion), m. The grid
+  /// keeps apart what lies on either side of walls that a kernel reaches across.
+  double thickness = std::numeric_limits<double>::infinity();
 
   Pose<dim> pose_at(double t) const { return keyframes ? keyframes->pose_at(t) : motion.pose_at(t); }
 };
@@ -38,6 +42,9 @@ class PosedCollider {
 
   /// Signed distance of world position x, m; negative inside.
   double distance(const Vec<double, dim>& x) const;
+  /// Outward unit normal where the surface is nearest to x.
+  Vec<double, dim> normal(const Vec<double, dim>& x) const;
+  double thickness() const { return collider_->thickness; }
   /// Velocity of the collider at x, m/s.
   Vec<double, dim> velocity(const Vec<double, dim>& x) const;
 

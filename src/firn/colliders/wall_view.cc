@@ -32,8 +32,7 @@ bool hides(const PosedCollider<dim>& collider, const WallView<dim>& from, const 
   // Next to a flat wall, which is nearly always, planes tell.
   const double turn = dot(from.normal, to.normal), out = dot(way, from.normal);
   if (turn > 0.9 && std::abs(out - (to.distance - from.distance)) < 0.25 * thickness) return false;
-  if (turn < -0.9 && out < -(from.distance + 0.5 * thickness) &&
-      dot(way, to.normal) > to.distance + 0.5 * thickness) {
+  if (turn < -0.9 && out < -(from.distance + 0.5 * thickness) && dot(way, to.normal) > to.distance + 0.5 * thickness) {
     normal = from.normal;
     return true;
   }
@@ -54,8 +53,8 @@ bool hides(const PosedCollider<dim>& collider, const WallView<dim>& from, const 
   return false;
 }
 
-#define FIRN_INSTANTIATE(dim)                                                                                        \
-  template WallView<dim> wall_view<dim>(const PosedCollider<dim>&, const Vec<double, dim>&);                         \
+#define FIRN_INSTANTIATE(dim)                                                                \
+  template WallView<dim> wall_view<dim>(const PosedCollider<dim>&, const Vec<double, dim>&); \
   template bool hides<dim>(const PosedCollider<dim>&, const WallView<dim>&, const WallView<dim>&, Vec<double, dim>&);
 FIRN_INSTANTIATE(2)
 FIRN_INSTANTIATE(3)

@@ -46,6 +46,8 @@ class BlockColliders {
   }
 
   std::size_t count() const { return colliders_.size(); }
+  /// By place in World::colliders.
+  const StepCollider<dim>& operator[](std::size_t place) const { return colliders_[place]; }
 
   /// @param block block key; shift where its lowest cell's content begins, in cells from the cell's first node
   /// @param reach how far the block's particles may move in the step, m

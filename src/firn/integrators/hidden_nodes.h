@@ -24,7 +24,10 @@ template <class Real, int dim>
 class HiddenNodes {
  public:
   HiddenNodes(const ThinColliders<dim>& colliders, const TransferSettings& settings, double dx, std::uint64_t block)
-      : near_(colliders.near(block)), views_(near_.size()), settings_(settings), dx_(dx),
+      : near_(colliders.near(block)),
+        views_(near_.size()),
+        settings_(settings),
+        dx_(dx),
         origin_(block_origin<dim>(block)) {}
 
   /// Whether no thin collider is near.

@@ -1,4 +1,6 @@
+#include <firn/colliders/wall_view.h>
 #include <firn/integrators/reference_step.h>
+#include <firn/integrators/thin_colliders.h>
 #include <firn/integrators/verbs.h>
 #include <firn/materials/models-inl.h>
 #include <firn/transfer/reference.h>
@@ -55,19 +57,43 @@ template <class Real, int dim>
 void update_velocity(World<Real, dim>& world, const std::vector<PosedCollider<dim>>& colliders, double dt,
                      ReferenceGrid<dim>& grid) {
   world.max_collider_speed = world.max_speed = 0;
-  for (auto& [index, node] : grid) {
+  for (auto& [key, node] : grid) {
+    const auto& [hidden_behind, index] = key;
     // As in the fast step, a mass that a Real cannot hold as a normal number is none.
     if (!(node.mass > static_cast<double>(std::numeric_limits<Real>::min()))) continue;
     Vec<double, dim> x;
     for (int d = 0; d < dim; ++d) x[d] = world.grid.dx() * static_cast<double>(index[static_cast<std::size_t>(d)]);
-    node.velocity = admissible(world, colliders, node.mass, x, (1 / node.mass) * node.momentum + dt * world.gravity);
+    node.velocity = (1 / node.mass) * node.momentum + dt * world.gravity;
+    for (std::size_t k = 0; k < colliders.size(); ++k) {
+      const bool hidden = static_cast<int>(k) == hidden_behind;
+      if (!hidden && !(colliders[k].distance(x) < 0)) continue;
+      const Vec<double, dim> before = node.velocity;
+      if (!hidden) {
+        node.velocity = colliders[k].admissible(x, before);
+      } else if (norm(node.wall_normal) > 0.5 * node.mass) {
+        node.velocity = colliders[k].admissible(x, normalized(node.wall_normal), before);
+      } else {
+        node.velocity = colliders[k].velocity(x);
+      }
+      world.collider_loads[k].add(node.mass * (before - node.velocity), x - colliders[k].pose().origin);
+      world.max_collider_speed = std::max(world.max_collider_speed, colliders[k].fastest(x));
+    }
     world.max_speed = std::max(world.max_speed, norm(node.velocity));
     node.velocity_change = node.velocity - (1 / node.mass) * node.momentum_before;
-    for (const auto& collider : colliders) {
-      if (!(collider.distance(x) < 0)) continue;
-      world.max_collider_speed = std::max(world.max_collider_speed, collider.fastest(x));
-    }
   }
+}
+
+/// Who sees what at the beginning of the step.
+template <class Real, int dim>
+HiddenBehind<dim> hidden_behind(const World<Real, dim>& world) {
+  return [thin = ThinColliders<dim>(world.colliders, world.t, world.grid.dx(), world.grid.kernel())](
+             const Vec<double, dim>& x_p, const Vec<double, dim>& x_i, Vec<double, dim>& normal) {
+    for (const ThinCollider<dim>& collider : thin.all()) {
+      const WallView<dim> from = wall_view(collider.posed, x_p), to = wall_view(collider.posed, x_i);
+      if (hides(collider.posed, from, to, normal)) return static_cast<int>(collider.place);
+    }
+    return -1;
+  };
 }
 
 /// Colliders act on v and u; then x_p += dt u.
@@ -179,12 +205,14 @@ StepReport reference_step(World<Real, dim>& world, double dt) {
 
   if (world.body_force) evaluate_body_force<Real, dim>(world);
   ReferenceGrid<dim> grid;
+  const HiddenBehind<dim> behind = hidden_behind(world);
   for (const auto& material : world.materials) {
-    reference_scatter<Real, dim>(material.particles, dx, dt, world.transfer, period, grid);
+    reference_scatter<Real, dim>(material.particles, dx, dt, world.transfer, period, behind, grid);
   }
   update_velocity<Real, dim>(world, colliders, dt, grid);
   for (std::size_t m = 0; m < world.materials.size(); ++m) {
-    const auto moves_with = reference_gather<Real, dim>(world.materials[m].particles, dx, world.transfer, period, grid);
+    const auto moves_with =
+        reference_gather<Real, dim>(world.materials[m].particles, dx, world.transfer, period, behind, grid);
     move(world, m, colliders, dt, moves_with, report);
   }
   for (std::size_t m = 0; m < world.materials.size(); ++m) {

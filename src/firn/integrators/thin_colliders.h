@@ -33,6 +33,7 @@ class ThinColliders {
   }
 
   bool empty() const { return thin_.empty(); }
+  const std::vector<ThinCollider<dim>>& all() const { return thin_; }
 
   /// Those that may lie between a particle of this block and one of its nodes, in the order of the scene.
   std::vector<const ThinCollider<dim>*> near(std::uint64_t block) const {

@@ -27,8 +27,8 @@ struct WallFields {
   /// mass; for FLIP, momentum before; normals of the wall, weighted with mass. Under kSeen is, without normals, what
   /// particles that are scattered here bring to nodes that they do see.
   std::map<std::uint64_t, Fields> tiles;
-  /// For each node block of the grid, its hidden nodes. Layers: velocity and mass; for FLIP, velocity change. Empty in a
-  /// world without thin colliders.
+  /// For each node block of the grid, its hidden nodes. Layers: velocity and mass; for FLIP, velocity change. Empty in
+  /// a world without thin colliders.
   std::vector<Fields> nodes;
 };
 

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <firn/core/parallel.h>
 #include <firn/integrators/hidden_nodes.h>
 #include <firn/integrators/world.h>
 #include <firn/transfer/gather.h>
 #include <firn/transfer/scatter.h>
 
 #include <algorithm>
+#include <span>
+#include <vector>
 
 /// Both transfers for particles that do not see all of their nodes.
 namespace firn {
@@ -36,30 +39,55 @@ void scatter_partly_hidden(const World<Real, dim>& world, const ParticleColumns<
   }
 }
 
-/// P2G of one chunk of a block. @param hidden of this block; null if it has no fields
+/// Makes tiles for those of the blocks that a thin collider is near and that have none.
 template <class Real, int dim>
-void scatter_beside_walls(const World<Real, dim>& world, ScatterBlock<Real, dim> scatter,
-                          const ParticleColumns<Real, dim>& columns, std::uint32_t count, double dt,
-                          HiddenNodes<Real, dim>* hidden, std::vector<WallField<Real>>* fields, Real* tile) {
-  Real* before = world.grid.layers() == 2 ? tile + world.grid.tile_size() : nullptr;
-  if (hidden == nullptr || hidden->empty()) {
-    scatter(columns, count, world.grid.dx(), dt, world.transfer, tile, before);
-    return;
+void add_wall_tiles(const ThinColliders<dim>& thin, std::span<const std::uint64_t> blocks, WallFields<Real>& walls) {
+  if (thin.empty()) return;
+  std::vector<char> near(blocks.size());
+  parallel_each(blocks.size(), [&](std::size_t b) { near[b] = !thin.near(blocks[b]).empty(); });
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    if (near[b] != 0) walls.tiles.try_emplace(blocks[b]);
   }
-  // Those that see all their nodes go the fast way, where the others pass for particles on their way elsewhere. Their
-  // sums stay apart, so that none depends on what shares a chunk.
-  alignas(64) std::uint8_t cells[kChunk];
-  std::copy_n(columns.cell, count, cells);
-  PartlyHidden<dim> particle;
-  for (std::uint32_t p = 0; p < count; ++p) {
-    if (cells[p] == kNoCell || !hidden->find(columns, p, particle)) continue;
-    scatter_partly_hidden(world, columns, p, dt, particle, *fields);
-    cells[p] = kNoCell;
-  }
-  ParticleColumns<Real, dim> others = columns;
-  others.cell = cells;
-  scatter(others, count, world.grid.dx(), dt, world.transfer, tile, before);
 }
+
+/// P2G of the particles of one block.
+template <class Real, int dim>
+class WallScatter {
+ public:
+  /// @param block its key; has a tile of world.walls if a thin collider is near
+  WallScatter(World<Real, dim>& world, const ThinColliders<dim>& thin, std::uint64_t block)
+      : world_(world), hidden_(thin, world.transfer, world.grid.dx(), block) {
+    if (!hidden_.empty()) fields_ = &world.walls.tiles.at(block);
+  }
+
+  /// Adds particles of the block to its tiles. @param fast the version for those that see all their nodes
+  void scatter(ScatterBlock<Real, dim> fast, const ParticleColumns<Real, dim>& columns, std::uint32_t count,
+               double dt, Real* tile) {
+    Real* before = world_.grid.layers() == 2 ? tile + world_.grid.tile_size() : nullptr;
+    if (fields_ == nullptr) {
+      fast(columns, count, world_.grid.dx(), dt, world_.transfer, tile, before);
+      return;
+    }
+    // For the fast path, the others pass for particles on their way elsewhere. Their sums stay apart, so that none
+    // depends on what shares a chunk.
+    alignas(64) std::uint8_t cells[kChunk];
+    std::copy_n(columns.cell, count, cells);
+    for (std::uint32_t p = 0; p < count; ++p) {
+      if (cells[p] == kNoCell || !hidden_.find(columns, p, particle_)) continue;
+      scatter_partly_hidden(world_, columns, p, dt, particle_, *fields_);
+      cells[p] = kNoCell;
+    }
+    ParticleColumns<Real, dim> others = columns;
+    others.cell = cells;
+    fast(others, count, world_.grid.dx(), dt, world_.transfer, tile, before);
+  }
+
+ private:
+  World<Real, dim>& world_;
+  HiddenNodes<Real, dim> hidden_;
+  std::vector<WallField<Real>>* fields_ = nullptr;
+  PartlyHidden<dim> particle_;
+};
 
 /// G2P for the particles of a block that do not see all their nodes: replaces what the fast path has gathered.
 template <class Real, int dim>
@@ -69,8 +97,11 @@ class WallGather {
   /// @param velocity tile of v_i; change tile of v_i - v_i^n, for FLIP
   WallGather(const World<Real, dim>& world, const ThinColliders<dim>& thin, std::size_t b, const Real* velocity,
              const Real* change)
-      : world_(world), b_(b), hidden_(thin, world.transfer, world.grid.dx(), world.grid.particle_blocks()[b]),
-        velocity_(velocity), change_(change) {}
+      : world_(world),
+        b_(b),
+        hidden_(thin, world.transfer, world.grid.dx(), world.grid.particle_blocks()[b]),
+        velocity_(velocity),
+        change_(change) {}
 
   bool empty() const { return hidden_.empty(); }
 

@@ -104,14 +104,14 @@ void ParticleSums<dim>::store_gradients(const ParticleColumns<Real, dim>& partic
   }
 }
 
-#define FIRN_INSTANTIATE(Real, dim)                                                                                  \
-  template void find_nodes<Real, dim>(const ParticleColumns<Real, dim>&, std::uint32_t, double,                      \
-                                      const TransferSettings&, ParticleNodes<dim>&);                                 \
-  template ParticleLoad<dim>::ParticleLoad(const ParticleColumns<Real, dim>&, std::uint32_t, double, double,         \
-                                           const TransferSettings&);                                                 \
-  template Vec<double, dim> ParticleSums<dim>::new_velocity(const ParticleColumns<Real, dim>&, std::uint32_t,        \
-                                                            double) const;                                           \
-  template void ParticleSums<dim>::store_gradients(const ParticleColumns<Real, dim>&, std::uint32_t, double,         \
+#define FIRN_INSTANTIATE(Real, dim)                                                                                   \
+  template void find_nodes<Real, dim>(const ParticleColumns<Real, dim>&, std::uint32_t, double,                       \
+                                      const TransferSettings&, ParticleNodes<dim>&);                                  \
+  template ParticleLoad<dim>::ParticleLoad(const ParticleColumns<Real, dim>&, std::uint32_t, double, double,          \
+                                           const TransferSettings&);                                                  \
+  template Vec<double, dim> ParticleSums<dim>::new_velocity(const ParticleColumns<Real, dim>&, std::uint32_t, double) \
+      const;                                                                                                          \
+  template void ParticleSums<dim>::store_gradients(const ParticleColumns<Real, dim>&, std::uint32_t, double,          \
                                                    const TransferSettings&) const;
 FIRN_INSTANTIATE(float, 2)
 FIRN_INSTANTIATE(float, 3)
