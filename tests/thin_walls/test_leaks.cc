@@ -50,7 +50,8 @@ std::size_t spilled_through_cup(double thickness, double t_end, double* moved = 
   cup.thickness = wall;
   std::vector<Keyframe<2>> keys;
   for (int k = 0; k <= 20; ++k) {
-    keys.push_back({0.15 * k, {{k == 0 ? 0 : (k % 2 == 0 ? -1.5 : 1.5) * kDx, 0.013}}, identity<double, 2>(), 1});
+    const double side = k == 0 ? 0 : k % 2 == 0 ? -1.5 : 1.5;
+    keys.push_back({0.15 * k, {{side * kDx, 0.013}}, 0, 1});
   }
   cup.keyframes = std::make_shared<KeyframeMotion<2>>(std::move(keys), Interpolation::smooth);
   world.colliders.push_back(cup);
