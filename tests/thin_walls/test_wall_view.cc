@@ -86,7 +86,8 @@ TEST(WallView, ACornerOfACupHidesTheOutside) {
   EXPECT_TRUE(ask<2>(cup, inside, {{-2.1, -2.1}}).hidden);
   EXPECT_TRUE(ask<2>(cup, {{-2.1, -2.1}}, inside).hidden);
   EXPECT_FALSE(ask<2>(cup, inside, {{-1.2, -1.2}}).hidden);
-  EXPECT_FALSE(ask<2>(cup, {{-2.1, -1.7}}, {{-1.7, -2.1}}).hidden) << "round the outer corner";
+  EXPECT_FALSE(ask<2>(cup, {{-2.1, -1.95}}, {{-1.95, -2.1}}).hidden) << "round the outer corner";
+  EXPECT_TRUE(ask<2>(cup, {{-2.1, -1.7}}, {{-1.7, -2.1}}).hidden) << "through it";
   EXPECT_NEAR(ask<2>(cup, inside, {{-2.1, -1.65}}).normal[0], 1, 1e-12);
   EXPECT_NEAR(ask<2>(cup, {{-1.65, -1.7}}, {{-1.65, -2.1}}).normal[1], 1, 1e-12);
 }

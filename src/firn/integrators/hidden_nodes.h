@@ -4,7 +4,9 @@
 #include <firn/integrators/thin_colliders.h>
 #include <firn/integrators/wall_fields.h>
 #include <firn/transfer/one_particle.h>
+#include <firn/transfer/tile.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -33,43 +35,67 @@ class HiddenNodes {
   /// Whether no thin collider is near.
   bool empty() const { return near_.empty(); }
 
-  /// True if a node of particle p, which has a cell in the block, is hidden from it. A node behind several colliders
-  /// belongs to the first.
+  /// True if a node of particle p, which has a cell in the block, is hidden from it; `found` is set only then. A node
+  /// behind several colliders belongs to the first.
   bool find(const ParticleColumns<Real, dim>& particles, std::uint32_t p, PartlyHidden<dim>& found) {
-    const Vec<double, dim> x = position(particles, p);
-    // The farthest node is half a support away on each axis.
-    const double reach = 0.5 * support(settings_.kernel) * std::sqrt(static_cast<double>(dim)) * dx_;
-    bool listed = false, any = false;
+    const Neighbourhood around = neighbourhood(particles, p);
+    bool any = false;
     for (std::size_t k = 0; k < near_.size(); ++k) {
       const PosedCollider<dim>& collider = near_[k]->posed;
-      if (!(collider.distance(x) < reach)) continue;
-      if (!listed) list(particles, p, found);
-      listed = true;
-      const WallView<dim> from = wall_view(collider, x);
-      for (int n = 0; n < found.nodes.count; ++n) {
-        if (found.behind[n] != WallFields<Real>::kSeen) continue;
-        if (!hides(collider, from, view(k, found.nodes.place[n]), found.normal[n])) continue;
-        found.behind[n] = static_cast<int>(near_[k]->place);
+      const double distance = collider.distance(around.x);
+      if (!(distance < around.reach)) continue;
+      const WallView<dim> from = wall_view(collider, around.x);
+      for (int n = 0; n < around.count; ++n) {
+        double square = 0;
+        int place = around.first;
+        for (int d = dim - 1, rest = n; d >= 0; --d, rest /= around.side) {
+          const int a = rest % around.side;
+          square += around.squares[d][a];
+          place += a * tile_stride<dim>(settings_.kernel, d) / kNodeWidth;
+        }
+        // Nothing is between a particle and what is nearer to it than the wall.
+        if (distance > 0 && square <= distance * distance) continue;
+        if (any && found.behind[n] != WallFields<Real>::kSeen) continue;
+        Vec<double, dim> normal;
+        if (!hides(collider, from, view(k, place), normal)) continue;
+        if (!any) std::fill_n(found.behind, around.count, WallFields<Real>::kSeen);
         any = true;
+        found.behind[n] = static_cast<int>(near_[k]->place);
+        found.normal[n] = normal;
       }
     }
+    if (any) find_nodes(particles, p, dx_, settings_, found.nodes);
     return any;
   }
 
  private:
-  void list(const ParticleColumns<Real, dim>& particles, std::uint32_t p, PartlyHidden<dim>& found) const {
-    find_nodes(particles, p, dx_, settings_, found.nodes);
-    for (int n = 0; n < found.nodes.count; ++n) found.behind[n] = WallFields<Real>::kSeen;
-  }
-
-  Vec<double, dim> position(const ParticleColumns<Real, dim>& particles, std::uint32_t p) const {
-    const Index<dim> cell = cell_of_code<dim>(origin_, particles.cell[p]);
+  /// Where a particle and its nodes are.
+  struct Neighbourhood {
     Vec<double, dim> x;
-    for (int d = 0; d < dim; ++d) {
-      x[d] = dx_ * (static_cast<double>(cell[static_cast<std::size_t>(d)]) + cell_offset(settings_.kernel) +
-                    static_cast<double>(particles.offset[d][p]));
+    int side, count, first;  ///< nodes on an axis and in all; place of the first in the tile
+    double squares[dim][4];  ///< (x_i - x_p)^2 on each axis, m^2
+    double reach;            ///< of the farthest node, m
+  };
+
+  Neighbourhood neighbourhood(const ParticleColumns<Real, dim>& particles, std::uint32_t p) const {
+    Neighbourhood around;
+    around.side = support(settings_.kernel);
+    around.count = power(around.side, dim);
+    around.first = 0;
+    double farthest = 0;
+    for (int d = dim - 1, rest = particles.cell[p]; d >= 0; --d, rest /= kBlockSide<dim>) {
+      const int c = rest % kBlockSide<dim>;
+      const double in_cells = cell_offset(settings_.kernel) + static_cast<double>(particles.offset[d][p]);
+      around.x[d] = dx_ * (static_cast<double>(origin_[static_cast<std::size_t>(d)] + c) + in_cells);
+      around.first += c * tile_stride<dim>(settings_.kernel, d) / kNodeWidth;
+      for (int a = 0; a < around.side; ++a) {
+        const double r = dx_ * (a - in_cells);
+        around.squares[d][a] = r * r;
+      }
+      farthest += std::max(around.squares[d][0], around.squares[d][around.side - 1]);
     }
-    return x;
+    around.reach = std::sqrt(farthest);
+    return around;
   }
 
   const WallView<dim>& view(std::size_t k, std::int32_t place) {
