@@ -45,9 +45,12 @@ StatsRow row_of(const FinishedFrame& frame) {
   row.max_J = totals.max_J;
   row.wall_seconds = frame.report.wall_seconds;
   row.further = {static_cast<double>(frame.report.parked)};
-  for (const ColliderForce& collider : frame.report.colliders) {
+  for (const ColliderReport& collider : frame.report.colliders) {
     for (const double f : collider.force.e) row.further.push_back(f);
     for (const double m : collider.torque.e) row.further.push_back(m);
+    row.further.push_back(static_cast<double>(collider.inside.particles));
+    row.further.push_back(collider.inside.depth);
+    row.further.push_back(static_cast<double>(collider.caught));
   }
   return row;
 }
@@ -55,7 +58,8 @@ StatsRow row_of(const FinishedFrame& frame) {
 std::vector<std::string> further_columns(const Scene& scene) {
   std::vector<std::string> names = {"parked"};
   for (const ColliderSettings& collider : scene.colliders) {
-    for (const char* column : {"force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z"}) {
+    for (const char* column :
+         {"force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z", "inside", "depth", "caught"}) {
       names.push_back(fmt::format("{}.{}", collider.name, column));
     }
   }

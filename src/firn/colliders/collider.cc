@@ -55,17 +55,23 @@ template <int dim>
 Vec<double, dim> PosedCollider<dim>::admissible(const Vec<double, dim>& x, const Vec<double, dim>& n,
                                                 const Vec<double, dim>& v) const {
   const Vec<double, dim> v_co = velocity(x);
-  if (collider_->contact == Contact::sticky) return v_co;
-  const Vec<double, dim> relative = v - v_co;
+  // What leaves keeps its bits.
+  if (collider_->contact == Contact::separate && dot(v - v_co, n) >= 0) return v;
+  return v_co + slide(n, v - v_co);
+}
+
+template <int dim>
+Vec<double, dim> PosedCollider<dim>::slide(const Vec<double, dim>& n, const Vec<double, dim>& relative) const {
+  if (collider_->contact == Contact::sticky) return {};
   const double vn = dot(relative, n);
-  if (vn >= 0 && collider_->contact == Contact::separate) return v;
+  if (vn >= 0 && collider_->contact == Contact::separate) return relative;
   Vec<double, dim> tangential = relative - vn * n;
   if (vn < 0 && collider_->friction > 0) {
     const double speed = norm(tangential);
     const double lost = -vn * collider_->friction;
     tangential = speed > lost ? (1 - lost / speed) * tangential : Vec<double, dim>{};
   }
-  return v_co + tangential;
+  return tangential;
 }
 
 template class PosedCollider<2>;

@@ -26,6 +26,7 @@ struct Collider {
   Contact contact = Contact::separate;
   double friction = 0;                                        ///< Coulomb coefficient; of slip and separate only
   std::shared_ptr<const KeyframeMotion<dim>> keyframes = {};  ///< instead of `motion`; may be null
+  bool push_out = false;                                      ///< whether particles inside are moved to the surface
   /// How thick its walls are where they are thin (wall_thickness, times the smallest scale of its motion), m. The grid
   /// keeps apart what lies on either side of walls that a kernel reaches across.
   double thickness = std::numeric_limits<double>::infinity();
@@ -42,7 +43,7 @@ class PosedCollider {
 
   /// Signed distance of world position x, m; negative inside.
   double distance(const Vec<double, dim>& x) const;
-  /// Outward unit normal where the surface is nearest to x.
+  /// Outward unit normal at the surface point nearest to world position x.
   Vec<double, dim> normal(const Vec<double, dim>& x) const;
   double thickness() const { return collider_->thickness; }
   /// Velocity of the collider at x, m/s.
@@ -59,6 +60,10 @@ class PosedCollider {
 
   /// The same for material at x that touches the collider's surface where its outward unit normal is n, wherever x is.
   Vec<double, dim> admissible(const Vec<double, dim>& x, const Vec<double, dim>& n, const Vec<double, dim>& v) const;
+
+  /// What the contact leaves of a motion relative to the collider, into or out of a surface with outward unit normal n:
+  /// any unit, any frame that moves with the collider.
+  Vec<double, dim> slide(const Vec<double, dim>& n, const Vec<double, dim>& relative) const;
 
   /// Where world position x is in the frame of the shape, whose unit of length is `scale` metres, and back.
   Vec<double, dim> to_frame(const Vec<double, dim>& x) const;

@@ -45,9 +45,7 @@ class BlockColliders {
     }
   }
 
-  std::size_t count() const { return colliders_.size(); }
-  /// By place in World::colliders.
-  const StepCollider<dim>& operator[](std::size_t place) const { return colliders_[place]; }
+  const std::vector<StepCollider<dim>>& all() const { return colliders_; }
 
   /// @param block block key; shift where its lowest cell's content begins, in cells from the cell's first node
   /// @param reach how far the block's particles may move in the step, m
@@ -61,7 +59,7 @@ class BlockColliders {
     }
     const double root = std::sqrt(static_cast<double>(dim)), radius = dx_ * 0.5 * kBlockSide<dim> * root * 1.001;
     for (const StepCollider<dim>& collider : colliders_) {
-      const double within = radius + root * (reach + 2 * collider.motion(centre, radius));
+      const double within = radius + root * (reach + 3 * collider.motion(centre, radius));
       if (std::min(collider.before.distance(centre), collider.after.distance(centre)) < within) {
         found.push_back(&collider);
       }

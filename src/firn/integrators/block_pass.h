@@ -1,6 +1,7 @@
 #pragma once
 
 #include <firn/integrators/block_colliders.h>
+#include <firn/integrators/particle_contact.h>
 #include <firn/integrators/step.h>
 #include <firn/integrators/wall_pass.h>
 #include <firn/materials/update_stress.h>
@@ -96,13 +97,13 @@ void BlockReport::note_failure(const World<Real, dim>& world, std::size_t materi
   for (int e = 0; e < dim * dim; ++e) failure->strain.push_back(static_cast<double>(columns.strain[e][p]));
 }
 
-/// Applies the colliders near a block to its particles' velocities, and counts the momentum that they take.
+/// Applies the colliders near a block to its particles, and counts the momentum that they take.
 template <class Real, int dim>
 class ColliderConstraint final : public ParticleConstraint<Real, dim> {
  public:
-  ColliderConstraint(const Grid<Real, dim>& grid, const Index<dim>& origin,
+  ColliderConstraint(const World<Real, dim>& world, double dt, const Index<dim>& origin,
                      std::span<const StepCollider<dim>* const> colliders)
-      : grid_(grid), origin_(origin), colliders_(colliders) {}
+      : grid_(world.grid), origin_(origin), contact_(world, dt, colliders) {}
 
   /// Where to count from now on; one load for each collider of the world.
   void count_in(std::vector<ColliderLoad>& loads) { loads_ = &loads; }
@@ -110,34 +111,27 @@ class ColliderConstraint final : public ParticleConstraint<Real, dim> {
   void apply(const ParticleColumns<Real, dim>& particles, std::uint32_t first, std::uint32_t count,
              Real* const (&v)[dim], Real* const (&u)[dim]) const override {
     for (std::uint32_t lane = 0; lane < count; ++lane) {
-      const auto x = position_in_block<Real, dim>(particles, first + lane, origin_, grid_.dx(), grid_.kernel());
-      for (const StepCollider<dim>* collider : colliders_) {
-        if (!(collider->after.distance(x) < 0)) continue;
-        constrain(collider->after, x, u, lane);
-        const Vec<double, dim> lost = constrain(collider->after, x, v, lane);
-        (*loads_)[collider->place].add(static_cast<double>(particles.mass[first + lane]) * lost,
-                                       x - collider->after.pose().origin);
+      MovingParticle<dim> particle = {
+          position_in_block<Real, dim>(particles, first + lane, origin_, grid_.dx(), grid_.kernel()),
+          static_cast<double>(particles.mass[first + lane]),
+          {},
+          {}};
+      for (int i = 0; i < dim; ++i) {
+        particle.v[i] = static_cast<double>(v[i][lane]);
+        particle.u[i] = static_cast<double>(u[i][lane]);
+      }
+      if (!contact_.apply(particle, *loads_)) continue;
+      for (int i = 0; i < dim; ++i) {
+        v[i][lane] = static_cast<Real>(particle.v[i]);
+        u[i][lane] = static_cast<Real>(particle.u[i]);
       }
     }
   }
 
  private:
-  /// Returns what the velocity loses.
-  static Vec<double, dim> constrain(const PosedCollider<dim>& collider, const Vec<double, dim>& x,
-                                    Real* const (&velocity)[dim], std::uint32_t lane) {
-    Vec<double, dim> w, lost;
-    for (int i = 0; i < dim; ++i) w[i] = static_cast<double>(velocity[i][lane]);
-    const Vec<double, dim> admissible = collider.admissible(x, w);
-    for (int i = 0; i < dim; ++i) {
-      velocity[i][lane] = static_cast<Real>(admissible[i]);
-      lost[i] = w[i] - static_cast<double>(velocity[i][lane]);
-    }
-    return lost;
-  }
-
   const Grid<Real, dim>& grid_;
   const Index<dim>& origin_;
-  std::span<const StepCollider<dim>* const> colliders_;
+  ParticleContact<Real, dim> contact_;
   std::vector<ColliderLoad>* loads_ = nullptr;
 };
 
@@ -165,10 +159,11 @@ template <class Real, int dim>
 class BlockNodes {
  public:
   BlockNodes(const World<Real, dim>& world, const BlockColliders<dim>& colliders, const ThinColliders<dim>& thin,
-             std::size_t b)
+             double dt, std::size_t b)
       : origin_(block_origin<dim>(world.grid.particle_blocks()[b])),
-        near_(colliders.near(world.grid.particle_blocks()[b], cell_offset(world.grid.kernel()))),
-        constraint_(world.grid, origin_, near_),
+        near_(colliders.near(world.grid.particle_blocks()[b], cell_offset(world.grid.kernel()),
+                             dt * fastest_node(world, b))),
+        constraint_(world, dt, origin_, near_),
         walls_(world, thin, b, velocity_, change_),
         corrections_(walls_.empty() ? nullptr : &walls_, near_.empty() ? nullptr : &constraint_) {
     load(
@@ -197,6 +192,15 @@ class BlockNodes {
   }
 
  private:
+  /// Speed of the fastest node that the block's particles touch: u is a mean of their velocities.
+  static double fastest_node(const World<Real, dim>& world, std::size_t b) {
+    double speed = 0;
+    for (int o = 0; o < kReach<dim>; ++o) {
+      speed = std::max(speed, world.block_speeds[static_cast<std::size_t>(world.grid.node_block_of(b, o))]);
+    }
+    return speed;
+  }
+
   /// Copies the node values that the block's particles touch into one tile. Nodes at the end of rows that belong to no
   /// cell are zero: they are read with weight zero.
   template <class NodesOf>

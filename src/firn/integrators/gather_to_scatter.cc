@@ -43,7 +43,7 @@ class Pass {
     if (m_ == 0) std::fill_n(grid.tile(b), grid.tile_size() * static_cast<std::size_t>(grid.layers()), Real(0));
     if (material_.block_at[b] < 0) return;
     const auto own = static_cast<std::size_t>(material_.block_at[b]);
-    BlockNodes<Real, dim> nodes(world_, colliders_, thin_, b);
+    BlockNodes<Real, dim> nodes(world_, colliders_, thin_, dt_, b);
     WallScatter<Real, dim> walls(world_, next_thin_, grid.particle_blocks()[b]);
     const std::uint32_t particles = particles_.block_size(own);
     const ParticleStorage passing = passing_storage(particles_.layout());

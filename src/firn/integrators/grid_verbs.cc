@@ -107,22 +107,25 @@ Vec<double, dim> admissible_behind(const PosedCollider<dim>& collider, const Vec
 }
 
 /// Makes the velocities of nodes inside colliders admissible and counts the momentum that they lose. Returns the
-/// largest speed of a collider at such a node.
+/// largest speed of a collider at such a node, or at one that it can reach within `ahead` seconds.
 /// @param behind place of the collider that these nodes are hidden behind, with the normals of its surface; or kSeen
 template <class Real, int dim>
 double apply_colliders(std::span<const StepCollider<dim>* const> colliders, std::uint64_t block, double dx, Real* nodes,
-                       Real* change, std::vector<ColliderLoad>& loads, int behind = WallFields<Real>::kSeen,
-                       const Real* normals = nullptr) {
+                       Real* change, double ahead, std::vector<ColliderLoad>& loads,
+                       int behind = WallFields<Real>::kSeen, const Real* normals = nullptr) {
   double fastest = 0;
   for (int n = 0; n < kBlockNodes<dim>; ++n) {
     Real* node = nodes + n * kNodeWidth;
     if (!(node[kMassSlot] > std::numeric_limits<Real>::min())) continue;
     const Vec<double, dim> x = node_position<dim>(block, n, dx);
     for (const StepCollider<dim>* near : colliders) {
-      const PosedCollider<dim>& collider = near->after;
+      // Nodes and particles are where they are at the beginning of the step, and so must be what they meet: then
+      // contact is the same in every frame of reference.
+      const PosedCollider<dim>& collider = near->before;
       const bool hidden = static_cast<int>(near->place) == behind;
-      if (!hidden && !(collider.distance(x) < 0)) continue;
-      fastest = std::max(fastest, collider.fastest(x));
+      const double distance = collider.distance(x), speed = near->after.fastest(x);
+      if (hidden || distance < ahead * speed) fastest = std::max(fastest, speed);
+      if (!hidden && !(distance < 0)) continue;
       Vec<double, dim> v, lost;
       for (int i = 0; i < dim; ++i) v[i] = node[i];
       const Vec<double, dim> w = hidden ? admissible_behind(collider, x, normals + n * kNodeWidth, node[kMassSlot], v)
@@ -152,7 +155,7 @@ template <class Real, int dim>
 class NodeUpdate {
  public:
   NodeUpdate(World<Real, dim>& world, double dt)
-      : world_(world), colliders_(world.colliders, world.t, dt, world.grid.dx()) {
+      : world_(world), dt_(dt), colliders_(world.colliders, world.t, dt, world.grid.dx()) {
     for (int i = 0; i < dim; ++i) gravity_impulse_[i] = static_cast<Real>(dt * world.gravity[i]);
   }
 
@@ -172,7 +175,7 @@ class NodeUpdate {
     const auto near = colliders_.near(block, 0);
     if (!near.empty()) {
       speeds.loads.resize(world_.colliders.size());
-      speeds.collider = apply_colliders<Real, dim>(near, block, grid.dx(), nodes, change, speeds.loads);
+      speeds.collider = apply_colliders<Real, dim>(near, block, grid.dx(), nodes, change, 3 * dt_, speeds.loads);
     }
     measure(nodes, change, speeds);
     return speeds;
@@ -188,12 +191,12 @@ class NodeUpdate {
     const std::uint64_t block = world_.grid.node_blocks()[g];
     auto near = colliders_.near(block, 0);
     // The wall may be farther from its hidden nodes than their block is wide.
-    const StepCollider<dim>* wall = &colliders_[static_cast<std::size_t>(field.collider)];
+    const StepCollider<dim>* wall = &colliders_.all()[static_cast<std::size_t>(field.collider)];
     const auto at = std::lower_bound(near.begin(), near.end(), wall);
     if (at == near.end() || *at != wall) near.insert(at, wall);
     BlockSpeeds speeds;
     speeds.loads.resize(world_.colliders.size());
-    speeds.collider = apply_colliders<Real, dim>(near, block, world_.grid.dx(), nodes, change, speeds.loads,
+    speeds.collider = apply_colliders<Real, dim>(near, block, world_.grid.dx(), nodes, change, 3 * dt_, speeds.loads,
                                                  field.collider, nodes + (flip ? 2 : 1) * kBlock);
     measure(nodes, change, speeds);
     return speeds;
@@ -205,6 +208,7 @@ class NodeUpdate {
   }
 
   World<Real, dim>& world_;
+  double dt_;
   BlockColliders<dim> colliders_;
   Vec<Real, dim> gravity_impulse_;
 };
@@ -228,6 +232,12 @@ void combine(std::span<const BlockSpeeds> blocks, World<Real, dim>& world) {
     grid_speed = std::max(grid_speed, block.grid.largest(heaviest));
     if (world.grid.has_velocity_change()) grid_change = std::max(grid_change, block.change.largest(heaviest));
   });
+  world.block_speeds.clear();
+  for (const BlockSpeeds& block : blocks) {
+    double fastest = block.grid.all;
+    for (const BlockSpeeds& hidden : block.hidden) fastest = std::max(fastest, hidden.grid.all);
+    world.block_speeds.push_back(std::sqrt(fastest));
+  }
   world.max_collider_speed = collider_speed;
   world.max_speed = bound_on_speed(world, grid_speed, grid_change);
 }

@@ -48,8 +48,8 @@ class HiddenNodes {
       for (int n = 0; n < around.count; ++n) {
         double square = 0;
         int place = around.first;
-        for (int d = dim - 1, rest = n; d >= 0; --d, rest /= around.side) {
-          const int a = rest % around.side;
+        for (int d = 0; d < dim; ++d) {
+          const int a = node_on_axis<dim>(settings_.kernel, n, d);
           square += around.squares[d][a];
           place += a * tile_stride<dim>(settings_.kernel, d) / kNodeWidth;
         }

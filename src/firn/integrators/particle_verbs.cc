@@ -71,7 +71,7 @@ void gather(World<Real, dim>& world, double dt, StepReport& report) {
   std::vector<std::vector<BlockReport>> reports(world.materials.size());
   for (auto& blocks_of_material : reports) blocks_of_material.resize(blocks);
   parallel_each(blocks, [&](std::size_t b) {
-    BlockNodes<Real, dim> nodes(world, colliders, thin, b);
+    BlockNodes<Real, dim> nodes(world, colliders, thin, dt, b);
     for (std::size_t m = 0; m < world.materials.size(); ++m) {
       auto& material = world.materials[m];
       if (material.block_at[b] < 0) continue;

@@ -1,4 +1,5 @@
 #include <firn/colliders/wall_view.h>
+#include <firn/integrators/particle_contact.h>
 #include <firn/integrators/reference_step.h>
 #include <firn/integrators/thin_colliders.h>
 #include <firn/integrators/verbs.h>
@@ -41,20 +42,8 @@ void evaluate_body_force(World<Real, dim>& world) {
   }
 }
 
-/// The admissible velocity at x; colliders take what a mass loses by it.
 template <class Real, int dim>
-Vec<double, dim> admissible(World<Real, dim>& world, const std::vector<PosedCollider<dim>>& colliders, double mass,
-                            const Vec<double, dim>& x, Vec<double, dim> v) {
-  for (std::size_t k = 0; k < colliders.size(); ++k) {
-    const Vec<double, dim> before = v;
-    v = colliders[k].admissible(x, v);
-    world.collider_loads[k].add(mass * (before - v), x - colliders[k].pose().origin);
-  }
-  return v;
-}
-
-template <class Real, int dim>
-void update_velocity(World<Real, dim>& world, const std::vector<PosedCollider<dim>>& colliders, double dt,
+void update_velocity(World<Real, dim>& world, const std::vector<StepCollider<dim>>& colliders, double dt,
                      ReferenceGrid<dim>& grid) {
   world.max_collider_speed = world.max_speed = 0;
   for (auto& [key, node] : grid) {
@@ -64,22 +53,26 @@ void update_velocity(World<Real, dim>& world, const std::vector<PosedCollider<di
     Vec<double, dim> x;
     for (int d = 0; d < dim; ++d) x[d] = world.grid.dx() * static_cast<double>(index[static_cast<std::size_t>(d)]);
     node.velocity = (1 / node.mass) * node.momentum + dt * world.gravity;
-    for (std::size_t k = 0; k < colliders.size(); ++k) {
-      const bool hidden = static_cast<int>(k) == hidden_behind;
-      if (!hidden && !(colliders[k].distance(x) < 0)) continue;
+    for (const StepCollider<dim>& at : colliders) {
+      const PosedCollider<dim>& collider = at.before;
+      const bool hidden = static_cast<int>(at.place) == hidden_behind;
       const Vec<double, dim> before = node.velocity;
       if (!hidden) {
-        node.velocity = colliders[k].admissible(x, before);
+        node.velocity = collider.admissible(x, before);
       } else if (norm(node.wall_normal) > 0.5 * node.mass) {
-        node.velocity = colliders[k].admissible(x, normalized(node.wall_normal), before);
+        node.velocity = collider.admissible(x, normalized(node.wall_normal), before);
       } else {
-        node.velocity = colliders[k].velocity(x);
+        node.velocity = collider.velocity(x);
       }
-      world.collider_loads[k].add(node.mass * (before - node.velocity), x - colliders[k].pose().origin);
-      world.max_collider_speed = std::max(world.max_collider_speed, colliders[k].fastest(x));
+      world.collider_loads[at.place].add(node.mass * (before - node.velocity), x - collider.pose().origin);
     }
     world.max_speed = std::max(world.max_speed, norm(node.velocity));
     node.velocity_change = node.velocity - (1 / node.mass) * node.momentum_before;
+    for (const StepCollider<dim>& collider : colliders) {
+      const bool hidden = static_cast<int>(collider.place) == hidden_behind;
+      const double speed = collider.after.fastest(x), distance = collider.before.distance(x);
+      if (hidden || distance < 3 * dt * speed) world.max_collider_speed = std::max(world.max_collider_speed, speed);
+    }
   }
 }
 
@@ -98,18 +91,23 @@ HiddenBehind<dim> hidden_behind(const World<Real, dim>& world) {
 
 /// Colliders act on v and u; then x_p += dt u.
 template <class Real, int dim>
-void move(World<Real, dim>& world, std::size_t m, const std::vector<PosedCollider<dim>>& colliders, double dt,
+void move(World<Real, dim>& world, std::size_t m, const std::vector<StepCollider<dim>>& colliders, double dt,
           const std::vector<Vec<double, dim>>& moves_with, StepReport& report) {
   auto& material = world.materials[m];
   auto& particles = material.particles;
   const double dx = world.grid.dx();
+  std::vector<const StepCollider<dim>*> all;
+  for (const StepCollider<dim>& collider : colliders) all.push_back(&collider);
+  const ParticleContact<Real, dim> contact(world, dt, all);
   material.max_speed = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
-    const auto x = particles.position(p, dx, world.grid.kernel());
-    Vec<double, dim> v;
+    MovingParticle<dim> particle = {particles.position(p, dx, world.grid.kernel()),
+                                    static_cast<double>(particles.real(Field::mass)[p]),
+                                    {},
+                                    moves_with[p]};
+    Vec<double, dim>&v = particle.v, &u = particle.u;
     for (int i = 0; i < dim; ++i) v[i] = static_cast<double>(particles.real(Field::velocity, i)[p]);
-    v = admissible(world, colliders, static_cast<double>(particles.real(Field::mass)[p]), x, v);
-    const Vec<double, dim> u = admissible(world, colliders, 0, x, moves_with[p]);
+    contact.apply(particle, world.collider_loads);
     for (int i = 0; i < dim; ++i) particles.real(Field::velocity, i)[p] = static_cast<Real>(v[i]);
     material.max_speed = std::max(material.max_speed, norm(v));
 
@@ -199,8 +197,8 @@ StepReport reference_step(World<Real, dim>& world, double dt) {
   StepReport report;
   const double dx = world.grid.dx();
   const Period<dim>& period = world.grid.period();
-  std::vector<PosedCollider<dim>> colliders;
-  for (const auto& collider : world.colliders) colliders.emplace_back(collider, world.t + dt, 2 * dt);
+  const BlockColliders<dim> posed(world.colliders, world.t, dt, dx);
+  const std::vector<StepCollider<dim>>& colliders = posed.all();
   world.collider_loads.resize(world.colliders.size());
 
   if (world.body_force) evaluate_body_force<Real, dim>(world);

@@ -61,8 +61,8 @@ class WallScatter {
   }
 
   /// Adds particles of the block to its tiles. @param fast the version for those that see all their nodes
-  void scatter(ScatterBlock<Real, dim> fast, const ParticleColumns<Real, dim>& columns, std::uint32_t count,
-               double dt, Real* tile) {
+  void scatter(ScatterBlock<Real, dim> fast, const ParticleColumns<Real, dim>& columns, std::uint32_t count, double dt,
+               Real* tile) {
     Real* before = world_.grid.layers() == 2 ? tile + world_.grid.tile_size() : nullptr;
     if (fields_ == nullptr) {
       fast(columns, count, world_.grid.dx(), dt, world_.transfer, tile, before);

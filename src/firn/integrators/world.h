@@ -70,10 +70,14 @@ struct World {
   BodyForce<dim> body_force;      ///< may be empty; set it before materials are added
   double t = 0;                   ///< s
   std::uint64_t steps = 0;
-  double max_collider_speed = 0;  ///< at nodes inside colliders in the last step, m/s
+  double max_collider_speed = 0;  ///< at nodes that are inside colliders or that these may soon reach, m/s
   double max_speed = 0;           ///< no particle is faster after the last step, m/s
+  /// Speed of the fastest node of each of the grid's node blocks, m/s: what no particle moves faster than.
+  std::vector<double> block_speeds = {};
   /// Whether steps may run gather, update_stress and the next scatter block by block. The bits are the same.
   bool fused = true;
+  /// Whether particles are stopped where their way in a step meets a collider. Off only to show what that is for.
+  bool swept_contact = true;
   /// The time step that the tiles hold the particles' contributions for, if they hold them.
   std::optional<double> scattered_dt;
   /// Whether all fields of all particles are stored.

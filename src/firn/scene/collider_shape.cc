@@ -217,6 +217,7 @@ Collider<dim> make_collider(const Scene& scene, const ColliderSettings& settings
   collider.contact = static_cast<Contact>(settings.contact);
   collider.friction = settings.friction;
   collider.thickness = thickness_of(collider);
+  collider.push_out = settings.push_out;
   return collider;
 }
 

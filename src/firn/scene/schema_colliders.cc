@@ -153,7 +153,12 @@ Section make_part_section() {
 
 Section make_collider_section() {
   Section section = list_section("collider", &Scene::colliders, "A rigid obstacle; one [[collider]] each.");
-  section.keys = shape_keys<ColliderSettings>("collider<index>", "Names the collider.");
+  section.keys = shape_keys<ColliderSettings>("collider<index>",
+                                              "Names the collider, also in its columns of stats.csv: NAME.force_x, _y, "
+                                              "_z (N, mean over the frame, of the material on the collider), "
+                                              "NAME.torque_x, _y, _z (N m, about `position` where it moves), "
+                                              "NAME.inside and NAME.depth (particles inside, and the deepest, m), "
+                                              "NAME.caught (times that another collider held a particle inside).");
   section.keys.front().decides_result = false;
   const std::vector<Key> motion = collider_motion_keys();
   section.keys.insert(section.keys.end(), motion.begin(), motion.end());
@@ -161,6 +166,10 @@ Section make_collider_section() {
       K("contact", &ColliderSettings::contact)
           .help("sticky: what touches moves along; slip: slides and never leaves; separate: slides and may leave."),
       K("friction", &ColliderSettings::friction).at_least(0).help("Coulomb's coefficient, for slip and separate."),
+      K("push_out", &ColliderSettings::push_out)
+          .help(
+              "Particles that are inside, because a body was placed there, are moved to the nearest surface, by at most a "
+              "tenth of a cell per step."),
       K("color", &ColliderSettings::color)
           .type(ValueType::vector3)
           .at_least(0)

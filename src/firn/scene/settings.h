@@ -159,6 +159,7 @@ struct ColliderSettings : ShapeSettings {
   Interpolation interpolation = Interpolation::linear;
   Contact contact = Contact::separate;
   double friction = 0;
+  bool push_out = false;       ///< whether particles inside are moved to the surface
   std::optional<Vec3d> color;  ///< linear RGB
 };
 

@@ -52,7 +52,7 @@ class SimulationOf final : public Simulation {
     if (prepared.failure) fail(*prepared.failure, 0);
     report_.particles = particle_count();
     report_.limit = "start";
-    report_.colliders.resize(scene_.colliders.size());
+    report_.colliders = collider_reports(0);
   }
 
   double time() const override { return world_->t; }
@@ -207,16 +207,27 @@ class SimulationOf final : public Simulation {
     report_.time = world_->t;
     report_.particles = particle_count();
     report_.parked = guard_.parked();
-    report_.colliders = collider_forces(world_->t - start);
+    report_.colliders = collider_reports(world_->t - start);
     return std::nullopt;
   }
 
-  std::vector<ColliderForce> collider_forces(double duration) const {
-    std::vector<ColliderForce> forces;
-    for (const ColliderLoad& load : world_->collider_loads) {
-      forces.push_back({(1 / duration) * load.impulse, (1 / duration) * load.angular_impulse});
+  /// @param duration how long the loads have been counted, s; 0 for not at all
+  std::vector<ColliderReport> collider_reports(double duration) const {
+    std::vector<ColliderReport> reports(world_->colliders.size());
+    for (std::size_t k = 0; k < reports.size() && duration > 0; ++k) {
+      const ColliderLoad& load = world_->collider_loads[k];
+      reports[k].force = (1 / duration) * load.impulse;
+      reports[k].torque = (1 / duration) * load.angular_impulse;
+      reports[k].caught = load.caught;
     }
-    return forces;
+    arena_.execute([&] {
+      for (const auto& material : world_->materials) {
+        const auto inside = measure_penetration<Real, dim>(material.particles, world_->grid.dx(),
+                                                           world_->transfer.kernel, world_->colliders, world_->t);
+        for (std::size_t k = 0; k < reports.size(); ++k) reports[k].inside += inside[k];
+      }
+    });
+    return reports;
   }
 
   std::optional<ParticleFailure> try_steps(double until) {

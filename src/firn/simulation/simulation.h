@@ -1,6 +1,7 @@
 #pragma once
 
 #include <firn/integrators/time_step.h>
+#include <firn/measure/penetration.h>
 #include <firn/measure/totals.h>
 #include <firn/scene/build_world.h>
 #include <firn/scene/settings.h>
@@ -13,10 +14,12 @@
 
 namespace firn {
 
-/// How the material has acted on a collider since the frame before, on average. In 2D per metre of thickness.
-struct ColliderForce {
-  Vec3d force = {};   ///< N
-  Vec3d torque = {};  ///< about the collider's own origin, its `position`, wherever that moves, N m
+/// How material and a collider stand to each other. In 2D forces are per metre of thickness.
+struct ColliderReport {
+  Vec3d force = {};         ///< of the material on the collider, mean since the frame before, N
+  Vec3d torque = {};        ///< the same about the collider's own origin, its `position`, wherever that moves, N m
+  Penetration inside = {};  ///< particles inside it now
+  std::int64_t caught = 0;  ///< see ColliderLoad, since the frame before
 };
 
 /// What one frame came to.
@@ -30,7 +33,7 @@ struct FrameReport {
   std::int64_t parked = 0;  ///< since the start
   int retries = 0;          ///< times that the frame was taken back and computed with smaller steps
   double wall_seconds = 0;
-  std::vector<ColliderForce> colliders = {};  ///< in the order of the scene
+  std::vector<ColliderReport> colliders = {};  ///< in the order of the scene
 };
 
 /// A scene being simulated, whatever its dimension and precision: the one face of the library that the command line,

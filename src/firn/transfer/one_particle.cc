@@ -40,20 +40,20 @@ template <class Real, int dim>
 void find_nodes(const ParticleColumns<Real, dim>& particles, std::uint32_t p, double dx,
                 const TransferSettings& settings, ParticleNodes<dim>& nodes) {
   const Kernel kernel = settings.kernel;
-  const int side = support(kernel);
+  const double inv_dx = 1 / dx;
   Axis axes[dim];
   std::int32_t first = 0;
   for (int d = dim - 1, rest = particles.cell[p]; d >= 0; --d, rest /= kBlockSide<dim>) {
     axes[d] = axis_of(kernel, static_cast<double>(particles.offset[d][p]));
     first += rest % kBlockSide<dim> * tile_stride<dim>(kernel, d) / kNodeWidth;
   }
-  nodes.count = power(side, dim);
+  nodes.count = power(support(kernel), dim);
   for (int n = 0; n < nodes.count; ++n) {
     nodes.w[n] = 1;
-    nodes.grad_w[n] = constant_vector<double, dim>(1 / dx);
+    nodes.grad_w[n] = constant_vector<double, dim>(inv_dx);
     nodes.place[n] = first;
-    for (int d = dim - 1, rest = n; d >= 0; --d, rest /= side) {
-      const int a = rest % side;
+    for (int d = 0; d < dim; ++d) {
+      const int a = node_on_axis<dim>(kernel, n, d);
       nodes.w[n] *= axes[d].w[a];
       nodes.r[n][d] = dx * axes[d].distance[a];
       nodes.place[n] += a * tile_stride<dim>(kernel, d) / kNodeWidth;

@@ -4,6 +4,8 @@
 #include <firn/state/particle_columns.h>
 #include <firn/transfer/transfer_settings.h>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 /// P2G and G2P of one particle, node by node and in double precision: for particles that do not see all of their nodes.
@@ -21,6 +23,26 @@ struct ParticleNodes {
   Vec<double, dim> r[kMost];       ///< x_i - x_p, m
   std::int32_t place[kMost];       ///< number of the node in the tile of the particle's block
 };
+
+/// Place on axis d of a particle's node n.
+template <int dim>
+int node_on_axis(Kernel kernel, int n, int d) {
+  // A table, because divisions by a number that the compiler does not know would take longer than all else.
+  static constexpr auto kPlaces = [] {
+    std::array<std::array<std::array<std::int8_t, dim>, ParticleNodes<dim>::kMost>, 3> places = {};
+    for (int k = 0; k < 3; ++k) {
+      const int side = support(static_cast<Kernel>(k));
+      for (int m = 0; m < power(side, dim); ++m) {
+        for (int e = dim - 1, rest = m; e >= 0; --e, rest /= side) {
+          places[static_cast<std::size_t>(k)][static_cast<std::size_t>(m)][static_cast<std::size_t>(e)] =
+              static_cast<std::int8_t>(rest % side);
+        }
+      }
+    }
+    return places;
+  }();
+  return kPlaces[static_cast<std::size_t>(kernel)][static_cast<std::size_t>(n)][static_cast<std::size_t>(d)];
+}
 
 /// Nodes of particle p, which has a cell in its block.
 template <class Real, int dim>
