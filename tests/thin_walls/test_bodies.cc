@@ -72,7 +72,7 @@ const Case kCases[] = {
     {.name = "sticky", .degrees = 30, .contact = Contact::sticky},
     {.name = "slip", .degrees = 30, .contact = Contact::slip},
     {.name = "friction", .degrees = 30, .friction = 0.5},
-    {.name = "linear kernel", .kernel = Kernel::linear, .form = Form::gradient, .degrees = 30},
+    {.name = "linear kernel", .kernel = Kernel::linear, .form = Form::gradient, .affine = 0, .degrees = 30},
     {.name = "cubic kernel", .kernel = Kernel::cubic, .degrees = 30},
     {.name = "gradient form", .form = Form::gradient, .degrees = 30},
     {.name = "FLIP", .affine = 0, .flip = 1, .degrees = 30},
