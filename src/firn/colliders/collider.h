@@ -4,6 +4,7 @@
 #include <firn/geometry/keyframe_motion.h>
 #include <firn/geometry/shape.h>
 
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -26,6 +27,9 @@ struct Collider {
   double friction = 0;                                        ///< Coulomb coefficient; of slip and separate only
   std::shared_ptr<const KeyframeMotion<dim>> keyframes = {};  ///< instead of `motion`; may be null
   bool push_out = false;                                      ///< whether particles inside are moved to the surface
+  /// How thick its walls are where they are thin (wall_thickness, times the smallest scale of its motion), m. The grid
+  /// keeps apart what lies on either side of walls that a kernel reaches across.
+  double thickness = std::numeric_limits<double>::infinity();
 
   Pose<dim> pose_at(double t) const { return keyframes ? keyframes->pose_at(t) : motion.pose_at(t); }
 };
@@ -41,6 +45,7 @@ class PosedCollider {
   double distance(const Vec<double, dim>& x) const;
   /// Outward unit normal at the surface point nearest to world position x.
   Vec<double, dim> normal(const Vec<double, dim>& x) const;
+  double thickness() const { return collider_->thickness; }
   /// Velocity of the collider at x, m/s.
   Vec<double, dim> velocity(const Vec<double, dim>& x) const;
 

@@ -3,6 +3,7 @@
 #include <firn/integrators/block_colliders.h>
 #include <firn/integrators/particle_contact.h>
 #include <firn/integrators/step.h>
+#include <firn/integrators/wall_pass.h>
 #include <firn/materials/update_stress.h>
 #include <firn/transfer/gather.h>
 
@@ -134,15 +135,37 @@ class ColliderConstraint final : public ParticleConstraint<Real, dim> {
   std::vector<ColliderLoad>* loads_ = nullptr;
 };
 
+/// What corrects the particles of a block after G2P: first that they do not see all of their nodes, then colliders.
+template <class Real, int dim>
+class BlockConstraint final : public ParticleConstraint<Real, dim> {
+ public:
+  /// @param walls, colliders may be null
+  BlockConstraint(WallGather<Real, dim>* walls, const ColliderConstraint<Real, dim>* colliders)
+      : walls_(walls), colliders_(colliders) {}
+
+  void apply(const ParticleColumns<Real, dim>& particles, std::uint32_t first, std::uint32_t count,
+             Real* const (&v)[dim], Real* const (&u)[dim]) const override {
+    if (walls_ != nullptr) walls_->apply(particles, first, count, v, u);
+    if (colliders_ != nullptr) colliders_->apply(particles, first, count, v, u);
+  }
+
+ private:
+  WallGather<Real, dim>* walls_;
+  const ColliderConstraint<Real, dim>* colliders_;
+};
+
 /// Everything that G2P needs of one block of the grid, whichever material it is for.
 template <class Real, int dim>
 class BlockNodes {
  public:
-  BlockNodes(const World<Real, dim>& world, const BlockColliders<dim>& colliders, double dt, std::size_t b)
+  BlockNodes(const World<Real, dim>& world, const BlockColliders<dim>& colliders, const ThinColliders<dim>& thin,
+             double dt, std::size_t b)
       : origin_(block_origin<dim>(world.grid.particle_blocks()[b])),
         near_(colliders.near(world.grid.particle_blocks()[b], cell_offset(world.grid.kernel()),
                              dt * fastest_node(world, b))),
-        constraint_(world, dt, origin_, near_) {
+        constraint_(world, dt, origin_, near_),
+        walls_(world, thin, b, velocity_, change_),
+        corrections_(walls_.empty() ? nullptr : &walls_, near_.empty() ? nullptr : &constraint_) {
     load(
         world.grid, b, [&](std::size_t g) { return world.grid.nodes(g); }, velocity_);
     if (world.grid.has_velocity_change()) {
@@ -165,7 +188,7 @@ class BlockNodes {
     }
     return {velocity_, change_,        world.grid.dx(),
             dt,        world.transfer, world.grid.period(),
-            origin_,   first_place,    near_.empty() ? nullptr : &constraint_};
+            origin_,   first_place,    near_.empty() && walls_.empty() ? nullptr : &corrections_};
   }
 
  private:
@@ -211,6 +234,8 @@ class BlockNodes {
   Index<dim> origin_;
   std::vector<const StepCollider<dim>*> near_;
   ColliderConstraint<Real, dim> constraint_;
+  WallGather<Real, dim> walls_;
+  BlockConstraint<Real, dim> corrections_;
   alignas(64) Real velocity_[kLargestTile];
   alignas(64) Real change_[kLargestTile];
 };

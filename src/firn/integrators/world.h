@@ -2,6 +2,7 @@
 
 #include <firn/colliders/collider.h>
 #include <firn/colliders/collider_load.h>
+#include <firn/integrators/wall_fields.h>
 #include <firn/materials/model_parameters.h>
 #include <firn/state/grid.h>
 #include <firn/state/particles.h>
@@ -60,6 +61,7 @@ struct World {
 
   TransferSettings transfer;
   Grid<Real, dim> grid;
+  WallFields<Real> walls;  ///< what the grid holds beside thin colliders
   std::vector<MaterialSet<Real, dim>> materials;
   std::vector<Collider<dim>> colliders;
   /// What each collider has taken; steps only add to it.

@@ -198,6 +198,16 @@ void set_motion(const Scene& scene, const ColliderSettings& settings, Collider<d
   }
 }
 
+/// How thin the walls of a collider are when its motion has shrunk it most, m.
+template <int dim>
+double thickness_of(const Collider<dim>& collider) {
+  double scale = 1;
+  if (collider.keyframes) {
+    for (const Keyframe<dim>& key : collider.keyframes->keyframes()) scale = std::min(scale, key.scale);
+  }
+  return scale * wall_thickness<dim>(*collider.shape);
+}
+
 template <int dim>
 Collider<dim> make_collider(const Scene& scene, const ColliderSettings& settings, double cell_size) {
   Collider<dim> collider;
@@ -206,6 +216,7 @@ Collider<dim> make_collider(const Scene& scene, const ColliderSettings& settings
   set_motion<dim>(scene, settings, collider);
   collider.contact = static_cast<Contact>(settings.contact);
   collider.friction = settings.friction;
+  collider.thickness = thickness_of(collider);
   collider.push_out = settings.push_out;
   return collider;
 }
@@ -213,16 +224,13 @@ Collider<dim> make_collider(const Scene& scene, const ColliderSettings& settings
 template <int dim>
 void warn_of_thin_colliders(const std::vector<Collider<dim>>& colliders, double cell_size) {
   for (const Collider<dim>& collider : colliders) {
-    double scale = 1;
-    if (collider.keyframes) {
-      for (const Keyframe<dim>& key : collider.keyframes->keyframes()) scale = std::min(scale, key.scale);
-    }
-    const double thickness = scale * wall_thickness<dim>(*collider.shape);
+    const double thickness = collider.thickness;
     // The measure is good to some per cent.
     if (!(thickness < 1.95 * cell_size)) continue;
     log_warning(
-        fmt::format("collider \"{}\" is about {:.2g} m thick, {:.2g} cells: what is on one side is felt on the "
-                    "other; make it two cells thick, or cells at most {:.2g} m",
+        fmt::format("collider \"{}\" is about {:.2g} m thick, {:.2g} cells: keeping its sides apart takes time, and "
+                    "what a mesh has thinner than half a cell may be missing; make it two cells thick, or cells at "
+                    "most {:.2g} m",
                     collider.name, thickness, thickness / cell_size, 0.5 * thickness));
   }
 }
