@@ -69,6 +69,9 @@ TEST(Schema, KeysWriteDifferentFields) {
         case ValueType::formulas:
           key.set(object, std::vector<NumberOrFormula>{{9}, {0, "x"}, {7}});
           break;
+        case ValueType::files:
+          key.set(object, std::vector<std::string>{"one.obj", "other.obj"});
+          break;
         default:
           key.set(object, std::vector<double>{9, 8, 7, 6, 5, 4});
           break;
