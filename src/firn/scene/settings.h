@@ -158,6 +158,7 @@ struct KeyframeSettings {
 struct ColliderSettings : ShapeSettings {
   enum class Contact { sticky, slip, separate };
   enum class Interpolation { linear, smooth };
+  enum class Look { solid, glass, hidden };
 
   Vec3d velocity = {};          ///< m/s
   Vec3d angular_velocity = {};  ///< rad/s, about `position`
@@ -167,6 +168,7 @@ struct ColliderSettings : ShapeSettings {
   Contact contact = Contact::separate;
   double friction = 0;
   std::optional<Vec3d> color;  ///< linear RGB
+  Look look = Look::solid;
 };
 
 struct CameraSettings {
