@@ -70,7 +70,11 @@ TEST(Schema, KeysWriteDifferentFields) {
           key.set(object, std::vector<NumberOrFormula>{{9}, {0, "x"}, {7}});
           break;
         case ValueType::files:
-          key.set(object, std::vector<std::string>{"one.obj", "other.obj"});
+        case ValueType::texts:
+          key.set(object, std::vector<std::string>{"other", "another"});
+          break;
+        case ValueType::keyframes:
+          key.set(object, std::vector<KeyframeSettings>{{0, Vec3d{{1, 2, 3}}, {}, 2}, {1, {}, Vec3d{{4, 5, 6}}, {}}});
           break;
         default:
           key.set(object, std::vector<double>{9, 8, 7, 6, 5, 4});
