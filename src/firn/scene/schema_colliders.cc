@@ -208,7 +208,8 @@ Section make_collider_section() {
           .help("Red, green, blue: linear reflectance."),
       K("look", &ColliderSettings::look)
           .presentation()
-          .help("In pictures and the viewer: solid; glass: clear, mirrors the sky and casts no shadow; hidden: not drawn."),
+          .help("In pictures and the viewer: solid; glass: clear, mirrors the sky and casts no shadow; hidden: not "
+                "drawn."),
   };
   section.keys.insert(section.keys.end(), more.begin(), more.end());
   return section;
