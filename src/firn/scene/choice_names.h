@@ -53,10 +53,6 @@ struct ChoiceNames<ColliderSettings::Look> {
   static constexpr std::string_view list[] = {"solid", "glass", "hidden"};
 };
 template <>
-struct ChoiceNames<ColliderSettings::Look> {
-  static constexpr std::string_view list[] = {"solid", "glass", "hidden"};
-};
-template <>
 struct ChoiceNames<ColliderSettings::Interpolation> {
   static constexpr std::string_view list[] = {"linear", "smooth"};
 };

@@ -94,9 +94,8 @@ std::vector<Key> shape_keys(std::string_view default_name, std::string_view name
       K("shape", of<Settings>(&ShapeSettings::shape))
           .required()
           .help("half_space is all that lies behind a plane (a line in 2D); cylinder, cone, torus, height_field, mesh "
-                "and "
-                "sequences are of 3D, polygon of 2D; union, intersection and difference are made of `parts`. Sequences "
-                "change their form in time and are colliders only."),
+                "and sequences are of 3D, polygon of 2D; union, intersection and difference are made of `parts`. "
+                "Sequences change their form in time and are colliders only."),
   };
   for (const auto& more : {dimension_keys<Settings>(), file_keys<Settings>()}) {
     keys.insert(keys.end(), more.begin(), more.end());
