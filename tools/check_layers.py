@@ -38,6 +38,7 @@ LIBRARY_OWNERS = {
     "toml++/": ["scene"],
     "hdf5": ["io"],
     "embree": ["render"],
+    "openvdb/": ["io"],
     "png.h": ["io", "render"],
     "stb/": ["render"],
     "muParser": ["core"],

@@ -71,6 +71,7 @@ TEST(Schema, KeysWriteDifferentFields) {
         case ValueType::formulas:
           key.set(object, std::vector<NumberOrFormula>{{9}, {0, "x"}, {7}});
           break;
+        case ValueType::files:
         case ValueType::texts:
           key.set(object, std::vector<std::string>{"other", "another"});
           break;

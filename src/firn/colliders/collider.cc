@@ -7,6 +7,9 @@ namespace firn {
 template <int dim>
 PosedCollider<dim>::PosedCollider(const Collider<dim>& collider, double t, double ahead)
     : collider_(&collider),
+      form_(collider.deforming ? collider.deforming->at(t) : nullptr),
+      shape_(form_ ? form_.get() : collider.shape.get()),
+      ahead_(ahead),
       pose_(collider.pose_at(t)),
       later_(collider.keyframes && ahead > 0 ? collider.pose_at(t + ahead) : pose_),
       inverse_(transpose(pose_.rotation)) {
@@ -25,30 +28,37 @@ Vec<double, dim> PosedCollider<dim>::to_world(const Vec<double, dim>& y) const {
 
 template <int dim>
 double PosedCollider<dim>::distance(const Vec<double, dim>& x) const {
-  return pose_.scale * collider_->shape->distance(to_frame(x));
+  return pose_.scale * shape_->distance(to_frame(x));
 }
 
 template <int dim>
 Vec<double, dim> PosedCollider<dim>::normal(const Vec<double, dim>& x) const {
-  return pose_.rotation * collider_->shape->normal(to_frame(x));
+  return pose_.rotation * shape_->normal(to_frame(x));
 }
 
 template <int dim>
 Vec<double, dim> PosedCollider<dim>::velocity(const Vec<double, dim>& x) const {
-  return pose_.velocity_at(x);
+  return form_ ? pose_.velocity_at(x) + deformation_velocity(x, pose_, 0) : pose_.velocity_at(x);
+}
+
+template <int dim>
+Vec<double, dim> PosedCollider<dim>::deformation_velocity(const Vec<double, dim>& x, const Pose<dim>& pose,
+                                                          double ahead) const {
+  return pose.rotation * (pose.scale * form_->velocity(to_frame(x), ahead));
 }
 
 template <int dim>
 double PosedCollider<dim>::fastest(const Vec<double, dim>& x) const {
   const double now = norm(velocity(x));
+  if (form_) return std::max(now, norm(later_.velocity_at(x) + deformation_velocity(x, later_, ahead_)));
   return collider_->keyframes ? std::max(now, norm(later_.velocity_at(x))) : now;
 }
 
 template <int dim>
 Vec<double, dim> PosedCollider<dim>::admissible(const Vec<double, dim>& x, const Vec<double, dim>& v) const {
   const Vec<double, dim> in_frame = to_frame(x);
-  if (!(collider_->shape->distance(in_frame) < 0)) return v;
-  return admissible(x, pose_.rotation * collider_->shape->normal(in_frame), v);
+  if (!(shape_->distance(in_frame) < 0)) return v;
+  return admissible(x, pose_.rotation * shape_->normal(in_frame), v);
 }
 
 template <int dim>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <firn/core/linear_algebra.h>
+#include <firn/geometry/deforming_shape.h>
 #include <firn/geometry/keyframe_motion.h>
 #include <firn/geometry/shape.h>
 
@@ -30,11 +31,13 @@ struct Collider {
   /// How thick its walls are where they are thin (wall_thickness, times the smallest scale of its motion), m. The grid
   /// keeps apart what lies on either side of walls that a kernel reaches across.
   double thickness = std::numeric_limits<double>::infinity();
+  /// Instead of `shape`, which then is its form at the start; may be null. Moves with the frame.
+  std::shared_ptr<const DeformingShape<dim>> deforming = {};
 
   Pose<dim> pose_at(double t) const { return keyframes ? keyframes->pose_at(t) : motion.pose_at(t); }
 };
 
-/// A collider at one instant: its frame is evaluated once and not per node.
+/// A collider at one instant: its frame and its form are evaluated once and not per node.
 template <int dim>
 class PosedCollider {
  public:
@@ -46,12 +49,15 @@ class PosedCollider {
   /// Outward unit normal at the surface point nearest to world position x.
   Vec<double, dim> normal(const Vec<double, dim>& x) const;
   double thickness() const { return collider_->thickness; }
-  /// Velocity of the collider at x, m/s.
+  /// Velocity of the collider at x, m/s: that of its frame and, where it deforms, of its surface next to x.
   Vec<double, dim> velocity(const Vec<double, dim>& x) const;
 
-  /// Speed of the collider at x now or, where keyframes may change it, `ahead` later: the larger, m/s. Time steps
-  /// follow from what was, so that a collider that sets off must be seen one step early.
+  /// Speed of the collider at x now or, where keyframes or a change of form may change it, `ahead` later: the larger,
+  /// m/s. Time steps follow from what was, so that a collider that sets off must be seen one step early.
   double fastest(const Vec<double, dim>& x) const;
+
+  /// By how much the change of form moves the surface across itself at most, m/s; 0 for a rigid collider.
+  double deformation_speed() const { return form_ ? pose_.scale * form_->fastest() : 0; }
 
   /// The velocity that material at x, inside the collider, may have instead of v (Stomakhin et al. 2013, section 8):
   /// the relative velocity v - v_co loses its part into the surface, vn = (v - v_co) n < 0, and Coulomb friction takes
@@ -70,10 +76,21 @@ class PosedCollider {
   Vec<double, dim> to_world(const Vec<double, dim>& y) const;
 
   const Collider<dim>& collider() const { return *collider_; }
+  /// The form at this instant, in the frame.
+  const Shape<dim>& shape() const { return *shape_; }
+  /// Velocity of the change of form next to y, in the frame; 0 for a rigid collider.
+  Vec<double, dim> velocity_of_form(const Vec<double, dim>& y) const {
+    return form_ ? form_->velocity(y) : Vec<double, dim>{};
+  }
   const Pose<dim>& pose() const { return pose_; }
 
  private:
+  Vec<double, dim> deformation_velocity(const Vec<double, dim>& x, const Pose<dim>& pose, double ahead) const;
+
   const Collider<dim>* collider_;
+  std::shared_ptr<const ShapeInMotion<dim>> form_;  ///< null unless the collider deforms
+  const Shape<dim>* shape_;
+  double ahead_;
   Pose<dim> pose_;
   Pose<dim> later_;
   Mat<double, dim> inverse_;  ///< of the rotation and the scale

@@ -18,8 +18,23 @@ template <int dim>
 struct StepCollider {
   std::size_t place;  ///< in World::colliders
   PosedCollider<dim> before, after;
+  double dt;  ///< s
 
-  bool moves() const { return after.collider().keyframes || !after.collider().motion.is_static(); }
+  bool moves() const {
+    const Collider<dim>& collider = after.collider();
+    return collider.keyframes || collider.deforming || !collider.motion.is_static();
+  }
+
+  /// Where the way of a particle at x begins, in the frame. Where the form changes, a point goes along with the surface
+  /// next to it, so that a way that ends beyond the new surface has crossed it.
+  Vec<double, dim> start(const Vec<double, dim>& x) const {
+    const Vec<double, dim> y = before.to_frame(x);
+    if (!after.collider().deforming) return y;
+    const Vec<double, dim> moved = y + dt * before.velocity_of_form(y);
+    const double depth = -after.shape().distance(moved);
+    // What a curved way of the surface leaves inside.
+    return depth >= 0 && before.shape().distance(y) >= 0 ? moved + 1.001 * depth * after.shape().normal(moved) : moved;
+  }
 
   /// How far points of the world within `radius` of x move in the collider's frame during the step, m.
   double motion(const Vec<double, dim>& x, double radius) const {
@@ -31,7 +46,8 @@ struct StepCollider {
       square += turn.e[e] * turn.e[e];
     }
     const double scale = std::max(before.pose().scale, after.pose().scale);
-    return scale * (norm(after.to_frame(x) - before.to_frame(x)) + radius * std::sqrt(square));
+    return scale * (norm(after.to_frame(x) - before.to_frame(x)) + radius * std::sqrt(square)) +
+           dt * std::max(before.deformation_speed(), after.deformation_speed());
   }
 };
 
@@ -43,7 +59,7 @@ class BlockColliders {
   BlockColliders(const std::vector<Collider<dim>>& colliders, double t, double dt, double dx) : dx_(dx) {
     for (std::size_t k = 0; k < colliders.size(); ++k) {
       // Two steps ahead, because the length of the next step follows from what this one sees.
-      colliders_.push_back({k, {colliders[k], t}, {colliders[k], t + dt, 2 * dt}});
+      colliders_.push_back({k, {colliders[k], t}, {colliders[k], t + dt, 2 * dt}, dt});
     }
   }
 

@@ -25,10 +25,10 @@ bool ParticleContact<Real, dim>::apply(MovingParticle<dim>& particle, std::vecto
   const Vec<double, dim> target = particle.x + dt_ * particle.u;
   bool inside = false, near = false;
   for (const Near* collider : colliders_) {
-    const Vec<double, dim> from = collider->before.to_frame(particle.x);
-    const double distance = collider->before.collider().shape->distance(from);
+    const double distance = collider->before.shape().distance(collider->before.to_frame(particle.x));
     inside = inside || distance < 0;
-    near = near || in_reach(distance, collider->moves() ? collider->after.to_frame(target) - from : dt_ * particle.u);
+    near = near || in_reach(distance, collider->moves() ? collider->after.to_frame(target) - collider->start(particle.x)
+                                                        : dt_ * particle.u);
   }
   const bool held = inside && hold_inside(particle, loads);
   const bool stopped = swept_ && (near || held) && sweep(particle, loads);
@@ -69,8 +69,8 @@ auto ParticleContact<Real, dim>::first_collision(const Vec<double, dim>& x, cons
     -> std::optional<Collision> {
   std::optional<Collision> first;
   for (const Near* near : colliders_) {
-    const Vec<double, dim> from = near->before.to_frame(x), to = near->after.to_frame(target);
-    const Shape<dim>& shape = *near->after.collider().shape;
+    const Vec<double, dim> from = near->start(x), to = near->after.to_frame(target);
+    const Shape<dim>& shape = near->after.shape();
     if (!in_reach(shape.distance(from), to - from)) continue;
     const double per_unit = 1 / near->after.pose().scale;
     const auto hit = first_hit(shape, from, to, {0.5 * margin_ * per_unit, kSearchStep * dx_ * per_unit});
@@ -95,7 +95,7 @@ bool ParticleContact<Real, dim>::sweep(MovingParticle<dim>& particle, std::vecto
     }
     const Vec<double, dim> n = after.pose().rotation * hit->normal;
     make_admissible(after, hit->near->place, after.to_world(hit->point), n, particle, loads);
-    const double gap = margin_ / after.pose().scale - after.collider().shape->distance(hit->point);
+    const double gap = margin_ / after.pose().scale - after.shape().distance(hit->point);
     Vec<double, dim> end = hit->point + std::max(gap, 0.0) * hit->normal;
     if (turn < kTurns) end += after.slide(hit->normal, hit->rest);
     target = after.to_world(end);

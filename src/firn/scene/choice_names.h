@@ -43,9 +43,10 @@ struct ChoiceNames<BodySettings::Units> {
 };
 template <>
 struct ChoiceNames<ShapeSettings::Shape> {
-  static constexpr std::string_view list[] = {"half_space", "box",   "rounded_box",  "sphere",    "capsule",
-                                              "cylinder",   "cone",  "torus",        "polygon",   "height_field",
-                                              "mesh",       "union", "intersection", "difference"};
+  static constexpr std::string_view list[] = {
+      "half_space",   "box",       "rounded_box",  "sphere", "capsule",       "cylinder",           "cone",
+      "torus",        "polygon",   "height_field", "mesh",   "mesh_sequence", "level_set_sequence", "union",
+      "intersection", "difference"};
 };
 template <>
 struct ChoiceNames<ColliderSettings::Look> {
@@ -54,6 +55,10 @@ struct ChoiceNames<ColliderSettings::Look> {
 template <>
 struct ChoiceNames<ColliderSettings::Interpolation> {
   static constexpr std::string_view list[] = {"linear", "smooth"};
+};
+template <>
+struct ChoiceNames<ColliderSettings::AtEnd> {
+  static constexpr std::string_view list[] = {"hold", "cycle"};
 };
 template <>
 struct ChoiceNames<ColliderSettings::Contact> {

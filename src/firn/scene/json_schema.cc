@@ -67,6 +67,10 @@ Json type_schema(const Key& key) {
       return list_schema(number, 2, 2);
     case ValueType::box:
       return list_schema(list_schema(number, 2, 3), 2, 2);
+    case ValueType::numbers:
+      return {{"type", "array"}, {"items", number}};
+    case ValueType::files:
+      return {{"anyOf", {{{"type", "string"}}, {{"type", "array"}, {"items", {{"type", "string"}}}}}}};
     case ValueType::texts:
       return {{"type", "array"}, {"items", {{"type", "string"}}}};
     case ValueType::keyframes:

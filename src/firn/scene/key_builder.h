@@ -86,6 +86,13 @@ struct FieldTraits<std::array<double, 2>> {
 };
 
 template <>
+struct FieldTraits<std::vector<double>> {
+  static constexpr ValueType type = ValueType::numbers;
+  static Value to_value(const std::vector<double>& field) { return field; }
+  static std::vector<double> from_value(const Value& value) { return std::get<std::vector<double>>(value); }
+};
+
+template <>
 struct FieldTraits<std::vector<std::string>> {
   static constexpr ValueType type = ValueType::texts;
   static Value to_value(const std::vector<std::string>& field) { return field; }

@@ -47,6 +47,11 @@ class ValueReader {
         return rotation();
       case ValueType::box:
         return box();
+      case ValueType::numbers:
+        return list(node_, node_.array() ? node_.array()->size() : 0);
+      case ValueType::files:
+        if (const auto* text = std::get_if<std::string>(&node_.value)) return std::vector<std::string>{*text};
+        return texts();
       case ValueType::texts:
         return texts();
       case ValueType::keyframes:

@@ -95,6 +95,10 @@ std::string type_text(const Key& key, int dimension) {
       return "a list of 2 numbers, the lower first";
     case ValueType::box:
       return "two corners, [[lowest], [highest]]";
+    case ValueType::numbers:
+      return "a list of numbers";
+    case ValueType::files:
+      return "a text in quotes or a list of them";
     case ValueType::texts:
       return "a list of texts in quotes";
     case ValueType::keyframes:

@@ -28,7 +28,9 @@ enum class ValueType {
   rotation,  ///< one number in 2D, three in 3D
   interval,  ///< two numbers, the lower first
   box,       ///< two vectors: lowest and highest corner
+  numbers,   ///< a list of any length
   texts,     ///< a list of names
+  files,     ///< a text or a list of texts, each a path or a pattern of paths
   keyframes  ///< a list of tables with the keys of keyframe_keys()
 };
 

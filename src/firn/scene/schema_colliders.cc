@@ -70,7 +70,7 @@ std::vector<Key> file_keys() {
               "path starts at the scene file's folder."),
       K("scale", of<Settings>(&ShapeSettings::scale))
           .above(0)
-          .only_with("shape", {"polygon", "mesh"})
+          .only_with("shape", {"polygon", "mesh", "mesh_sequence", "level_set_sequence"})
           .help("Factor on the coordinates of the file."),
       K("depth", of<Settings>(&ShapeSettings::depth))
           .unit("m")
@@ -93,14 +93,51 @@ std::vector<Key> shape_keys(std::string_view default_name, std::string_view name
       K("name", of<Settings>(&ShapeSettings::name)).default_text(default_name).help(name_help),
       K("shape", of<Settings>(&ShapeSettings::shape))
           .required()
-          .help(
-              "half_space is all that lies behind a plane (a line in 2D); cylinder, cone, torus, height_field and mesh "
-              "are of 3D, polygon of 2D; union, intersection and difference are made of `parts`."),
+          .help("half_space is all that lies behind a plane (a line in 2D); cylinder, cone, torus, height_field, mesh "
+                "and sequences are of 3D, polygon of 2D; union, intersection and difference are made of `parts`. "
+                "Sequences change their form in time and are colliders only."),
   };
   for (const auto& more : {dimension_keys<Settings>(), file_keys<Settings>()}) {
     keys.insert(keys.end(), more.begin(), more.end());
   }
   return keys;
+}
+
+std::vector<Key> sequence_keys() {
+  return {
+      K("meshes", &ColliderSettings::meshes)
+          .type(ValueType::files)
+          .path()
+          .required()
+          .only_with("shape", {"mesh_sequence"})
+          .help(
+              "Closed meshes (OBJ, PLY, STL) whose vertices move and whose triangles stay the same: a pattern such as "
+              "\"belt/belt_####.obj\", where #### is a number of at least four digits, or a list. The surface moves "
+              "as its vertices do, along itself too."),
+      K("level_sets", &ColliderSettings::level_sets)
+          .type(ValueType::files)
+          .path()
+          .required()
+          .only_with("shape", {"level_set_sequence"})
+          .help(
+              "OpenVDB files with a level set each: a pattern or a list. A vector grid named `v`, `vel` or `velocity` "
+              "gives the velocity along the surface; the one across follows from the motion."),
+      K("fps", &ColliderSettings::fps)
+          .unit("1/s")
+          .above(0)
+          .only_with("shape", {"mesh_sequence", "level_set_sequence"})
+          .default_text("none")
+          .help("Entries of the sequence per second, the first at t = 0; or give `times`."),
+      K("times", &ColliderSettings::times)
+          .unit("s")
+          .only_with("shape", {"mesh_sequence", "level_set_sequence"})
+          .default_text("none")
+          .help("When each entry of the sequence is reached. Before the first it is at rest."),
+      K("at_end", &ColliderSettings::at_end)
+          .only_with("shape", {"mesh_sequence", "level_set_sequence"})
+          .help("After the last entry: hold: at rest as it is there; cycle: once more from the first entry, whose form "
+                "is that of the last."),
+  };
 }
 
 std::vector<Key> collider_motion_keys() {
@@ -129,9 +166,8 @@ std::vector<Key> collider_motion_keys() {
                 "z, rx, "
                 "ry, rz; in 2D t, x, y, angle. The path starts at the scene file's folder."),
       K("interpolation", &ColliderSettings::interpolation)
-          .help(
-              "Between keyframes or rows: linear: constant velocities; smooth: continuous velocities, at rest at both "
-              "ends. Rotations go the shortest way."),
+          .help("Between keyframes, rows or meshes of a sequence: linear: constant velocities; smooth: continuous "
+                "velocities, at rest at both ends. Rotations go the shortest way."),
   };
 }
 
@@ -152,7 +188,7 @@ Section make_part_section() {
 }
 
 Section make_collider_section() {
-  Section section = list_section("collider", &Scene::colliders, "A rigid obstacle; one [[collider]] each.");
+  Section section = list_section("collider", &Scene::colliders, "An obstacle; one [[collider]] each.");
   section.keys = shape_keys<ColliderSettings>("collider<index>",
                                               "Names the collider, also in its columns of stats.csv: NAME.force_x, _y, "
                                               "_z (N, mean over the frame, of the material on the collider), "
@@ -160,8 +196,9 @@ Section make_collider_section() {
                                               "NAME.inside and NAME.depth (particles inside, and the deepest, m), "
                                               "NAME.caught (times that another collider held a particle inside).");
   section.keys.front().decides_result = false;
-  const std::vector<Key> motion = collider_motion_keys();
-  section.keys.insert(section.keys.end(), motion.begin(), motion.end());
+  for (const auto& added : {sequence_keys(), collider_motion_keys()}) {
+    section.keys.insert(section.keys.end(), added.begin(), added.end());
+  }
   const std::vector<Key> more = {
       K("contact", &ColliderSettings::contact)
           .help("sticky: what touches moves along; slip: slides and never leaves; separate: slides and may leave."),

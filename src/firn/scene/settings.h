@@ -115,6 +115,8 @@ struct ShapeSettings {
     polygon,
     height_field,
     mesh,
+    mesh_sequence,
+    level_set_sequence,
     union_,
     intersection,
     difference
@@ -130,7 +132,7 @@ struct ShapeSettings {
   double length = 0;               ///< along `axis`, m
   Vec3d axis = {};                 ///< of capsule, cylinder, cone and torus; any length but zero
   std::string file;                ///< of polygon, height field and mesh, as written in the scene
-  double scale = 1;                ///< of the coordinates of polygon and mesh
+  double scale = 1;                ///< of the coordinates of polygon, mesh and sequence
   double depth = 0;                ///< of a height field below its lowest point, m
   std::vector<std::string> parts;  ///< names of Scene::parts
   bool inverted = false;
@@ -158,10 +160,16 @@ struct KeyframeSettings {
 struct ColliderSettings : ShapeSettings {
   enum class Contact { sticky, slip, separate };
   enum class Interpolation { linear, smooth };
+  enum class AtEnd { hold, cycle };
   enum class Look { solid, glass, hidden };
 
-  Vec3d velocity = {};          ///< m/s
-  Vec3d angular_velocity = {};  ///< rad/s, about `position`
+  std::vector<std::string> meshes;      ///< files or patterns, as written in the scene; of a mesh sequence
+  std::vector<std::string> level_sets;  ///< the same of a level set sequence
+  std::optional<double> fps;            ///< entries of a sequence per second, 1/s; without it, `times`
+  std::vector<double> times;            ///< of the entries of a sequence, s
+  AtEnd at_end = AtEnd::hold;           ///< of a sequence
+  Vec3d velocity = {};                  ///< m/s
+  Vec3d angular_velocity = {};          ///< rad/s, about `position`
   std::vector<KeyframeSettings> keyframes;
   std::string trajectory;  ///< file, as written in the scene; "" without
   Interpolation interpolation = Interpolation::linear;
@@ -170,6 +178,8 @@ struct ColliderSettings : ShapeSettings {
   bool push_out = false;       ///< whether particles inside are moved to the surface
   std::optional<Vec3d> color;  ///< linear RGB
   Look look = Look::solid;
+
+  bool is_sequence() const { return shape == Shape::mesh_sequence || shape == Shape::level_set_sequence; }
 };
 
 struct CameraSettings {
