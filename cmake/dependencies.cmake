@@ -9,6 +9,7 @@ find_package(embree 3 REQUIRED)
 find_package(GTest REQUIRED)
 pkg_check_modules(highway REQUIRED IMPORTED_TARGET libhwy)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
+pkg_check_modules(muparser REQUIRED IMPORTED_TARGET muparser)
 pkg_check_modules(cli11 REQUIRED IMPORTED_TARGET CLI11)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 # `hdf5` alone silently becomes the MPI build where both are installed.

@@ -40,6 +40,7 @@ LIBRARY_OWNERS = {
     "embree": ["render"],
     "png.h": ["render"],
     "stb/": ["render"],
+    "muParser": ["core"],
     "CLI/": [],
     "epoxy/": [],
     "GLFW/": [],

@@ -8,7 +8,7 @@ TEST(Overrides, WinOverTheFile) {
                                        "limits.speed=50", "method={transfer=\"flip\", kernel=\"cubic\"}"});
   EXPECT_EQ(scene.materials[0].parameters.at("youngs_modulus"), 2e5);
   EXPECT_EQ(scene.end_time, 3);
-  EXPECT_EQ(scene.bodies[0].velocity[2], 2);
+  EXPECT_EQ(scene.bodies[0].velocity[2].number, 2);
   EXPECT_EQ(scene.limits.speed, 50);
   EXPECT_EQ(scene.method.transfer, MethodSettings::Transfer::flip);
   EXPECT_EQ(scene.method.kernel, MethodSettings::Kernel::cubic);

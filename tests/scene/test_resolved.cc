@@ -109,7 +109,7 @@ TEST(Resolved, LoadsAsTheSameScene) {
 TEST(Resolved, ComparisonSeesAChange) {
   const Scene scene = parse_scene(kFull, kFullPath);
   Scene other = scene;
-  other.bodies[0].velocity[2] += 1e-15;
+  other.bodies[0].velocity[2].number += 1e-15;
   EXPECT_NE(resolved_toml(scene), resolved_toml(other));
 }
 

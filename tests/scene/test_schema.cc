@@ -66,6 +66,9 @@ TEST(Schema, KeysWriteDifferentFields) {
         case ValueType::choice:
           key.set(object, std::string(key.choices.back()));
           break;
+        case ValueType::formulas:
+          key.set(object, std::vector<NumberOrFormula>{{9}, {0, "x"}, {7}});
+          break;
         default:
           key.set(object, std::vector<double>{9, 8, 7, 6, 5, 4});
           break;

@@ -3,6 +3,7 @@
 #include <firn/materials/model_info.h>
 #include <firn/scene/body_region.h>
 #include <firn/scene/build_world.h>
+#include <firn/scene/initial_velocity.h>
 #include <firn/seeding/sampling.h>
 #include <fmt/format.h>
 
@@ -31,13 +32,6 @@ template <int dim>
 AngularVelocity<dim> spin_of(const Vec3d& angular_velocity) {
   if constexpr (dim == 3) return angular_velocity;
   if constexpr (dim == 2) return angular_velocity[2];
-}
-
-/// omega x, the velocity of rigid rotation, as a matrix: 1/s.
-template <int dim>
-Mat<double, dim> spin_matrix(const AngularVelocity<dim>& omega) {
-  if constexpr (dim == 3) return {{0, -omega[2], omega[1], omega[2], 0, -omega[0], -omega[1], omega[0], 0}};
-  if constexpr (dim == 2) return {{0, -omega, omega, 0}};
 }
 
 template <int dim>
@@ -124,22 +118,6 @@ Samples<dim> fill(const Scene& scene, const BodySettings& body, const Region<dim
   return sample_region<dim>(region, request, name);
 }
 
-/// Linear and angular velocity about the body's centre of mass.
-template <class Real, int dim>
-void set_velocities(World<Real, dim>& world, Particles<Real, dim>& particles, std::size_t first,
-                    const BodySettings& body, const std::vector<Vec<double, dim>>& positions) {
-  const Mat<double, dim> spin = spin_matrix<dim>(spin_of<dim>(body.angular_velocity));
-  Vec<double, dim> centre = {};
-  for (const auto& x : positions) centre += x;
-  centre = (1.0 / static_cast<double>(positions.size())) * centre;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Vec<double, dim> v = cut<dim>(body.velocity) + spin * (positions[i] - centre);
-    for (int d = 0; d < dim; ++d) particles.real(Field::velocity, d)[first + i] = static_cast<Real>(v[d]);
-    if (world.transfer.affine == 0) continue;
-    for (int e = 0; e < dim * dim; ++e) particles.real(Field::affine, e)[first + i] = static_cast<Real>(spin.e[e]);
-  }
-}
-
 TransferSettings transfer_of(const MethodSettings& method) {
   using Transfer = MethodSettings::Transfer;
   TransferSettings settings;
@@ -219,7 +197,8 @@ BuiltWorld<Real, dim> build_world(const Scene& scene) {
       material.particles.append(samples.positions, plan.cell_size, world.transfer.kernel, world.grid.period(),
                                 material.parameters.density * samples.volume_per_sample, samples.volume_per_sample,
                                 next_id, static_cast<std::uint32_t>(b));
-      set_velocities(world, material.particles, first, body, samples.positions);
+      set_initial_velocity(material.particles, first, body, samples.positions, plan.cell_size,
+                           world.transfer.affine != 0);
     }
     plan.bodies[b].particles = static_cast<std::int64_t>(samples.positions.size());
     plan.particles += plan.bodies[b].particles;

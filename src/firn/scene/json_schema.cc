@@ -43,6 +43,8 @@ Json type_schema(const Key& key) {
       return {{"type", "string"}, {"enum", key.choices}};
     case ValueType::vector:
       return list_schema(number, 2, 3);
+    case ValueType::formulas:
+      return list_schema({{"anyOf", {number, {{"type", "string"}}}}}, 2, 3);
     case ValueType::vector3:
       return list_schema(number, 3, 3);
     case ValueType::rotation:

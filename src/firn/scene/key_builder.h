@@ -65,6 +65,17 @@ struct FieldTraits<Vec3d> {
 };
 
 template <>
+struct FieldTraits<std::array<NumberOrFormula, 3>> {
+  using Field = std::array<NumberOrFormula, 3>;
+  static constexpr ValueType type = ValueType::formulas;
+  static Value to_value(const Field& field) { return std::vector<NumberOrFormula>(field.begin(), field.end()); }
+  static Field from_value(const Value& value) {
+    const auto& given = std::get<std::vector<NumberOrFormula>>(value);
+    return {given[0], given[1], given[2]};
+  }
+};
+
+template <>
 struct FieldTraits<std::array<double, 2>> {
   static constexpr ValueType type = ValueType::interval;
   static Value to_value(const std::array<double, 2>& field) { return std::vector<double>{field[0], field[1]}; }

@@ -1,4 +1,5 @@
 #include <firn/core/error.h>
+#include <firn/core/expression.h>
 #include <firn/scene/nearest.h>
 #include <firn/scene/read_value.h>
 #include <firn/scene/value_text.h>
@@ -32,6 +33,8 @@ class ValueReader {
         return integer();
       case ValueType::vector:
         return padded(list(node_, static_cast<std::size_t>(dimension_)));
+      case ValueType::formulas:
+        return formulas();
       case ValueType::vector3:
         return list(node_, 3);
       case ValueType::interval:
@@ -124,6 +127,30 @@ class ValueReader {
   static std::vector<double> padded(std::vector<double> numbers) {
     numbers.resize(3, 0.0);
     return numbers;
+  }
+
+  std::vector<NumberOrFormula> formulas() const {
+    const Node::Array* array = node_.array();
+    if (!array || array->size() != static_cast<std::size_t>(dimension_)) wrong_type();
+    std::vector<NumberOrFormula> values;
+    for (const Node& element : *array) values.push_back(number_or_formula(element));
+    values.resize(3);
+    return values;
+  }
+
+  NumberOrFormula number_or_formula(const Node& node) const {
+    const auto* text = std::get_if<std::string>(&node.value);
+    if (!text) return {number(node)};
+    check_formula(*text);
+    return {0, *text};
+  }
+
+  void check_formula(const std::string& text) const {
+    try {
+      const Expression parsed(text);
+    } catch (const Error& error) {
+      fail(error.what());
+    }
   }
 
   Value rotation() const {

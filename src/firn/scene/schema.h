@@ -22,15 +22,16 @@ enum class ValueType {
   text,
   choice,
   vector,    ///< one number per dimension
+  formulas,  ///< one number or formula per dimension
   vector3,   ///< three numbers, also in 2D
   rotation,  ///< one number in 2D, three in 3D
   interval,  ///< two numbers, the lower first
   box,       ///< two vectors: lowest and highest corner
 };
 
-/// A value of any ValueType. Lists of numbers are stored for 3D (vector: 3, interval: 2, box: 6 numbers); a rotation in
-/// 2D is the third of its three numbers.
-using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
+/// A value of any ValueType. Lists of numbers are stored for 3D (vector and formulas: 3, interval: 2, box: 6 numbers);
+/// a rotation in 2D is the third of its three numbers.
+using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<NumberOrFormula>>;
 
 /// One key. `info` holds name, unit, range (of each number), help and hint.
 struct Key {

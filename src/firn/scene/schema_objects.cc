@@ -59,7 +59,10 @@ Section make_body_section() {
           .help("About the fixed axes x, then y, then z, before `position` is added; one angle in 2D."),
       K("position", &BodySettings::position).unit("m").help("Where the origin of mesh, polygon or shape goes."),
       K("material", &BodySettings::material).required().help("Name of a [material.<name>]."),
-      K("velocity", &BodySettings::velocity).unit("m/s").help("At t = 0."),
+      K("velocity", &BodySettings::velocity)
+          .unit("m/s")
+          .help(
+              "At t = 0; each component a number or a formula of the position x, y, z, such as \"0.1 * sin(pi * x)\"."),
       K("angular_velocity", &BodySettings::angular_velocity)
           .type(ValueType::rotation)
           .unit("rad/s")

@@ -15,6 +15,13 @@
 /// rotation of a 2D scene is its z component.
 namespace firn {
 
+/// A number, or the text of a formula in its place.
+struct NumberOrFormula {
+  double number = 0;
+  std::string formula = {};  ///< see Expression; "" for the number
+  bool operator==(const NumberOrFormula&) const = default;
+};
+
 /// How fine the simulation is: one of cell_size and particles is set.
 struct ResolutionSettings {
   std::optional<double> cell_size;        ///< m
@@ -67,13 +74,13 @@ struct BodySettings {
   double radius = 0;           ///< of a sphere or disk, m
   Fill fill = Fill::poisson;
   double scale = 1;
-  Units units = Units::m;       ///< of the file's coordinates
-  Vec3d rotation = {};          ///< degrees, about x, then y, then z
-  Vec3d position = {};          ///< m
-  std::string material;         ///< name of one of Scene::materials
-  Vec3d velocity = {};          ///< m/s
-  Vec3d angular_velocity = {};  ///< rad/s, about the body's centre of mass
-  std::optional<Vec3d> color;   ///< linear RGB
+  Units units = Units::m;                        ///< of the file's coordinates
+  Vec3d rotation = {};                           ///< degrees, about x, then y, then z
+  Vec3d position = {};                           ///< m
+  std::string material;                          ///< name of one of Scene::materials
+  std::array<NumberOrFormula, 3> velocity = {};  ///< m/s; formulas of x, y, z (m, at the start) and t (0)
+  Vec3d angular_velocity = {};                   ///< rad/s, about the body's centre of mass
+  std::optional<Vec3d> color;                    ///< linear RGB
 };
 
 struct ColliderSettings {

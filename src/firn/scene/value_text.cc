@@ -32,6 +32,15 @@ std::string numbers_text(ValueType type, const std::vector<double>& numbers, int
   }
 }
 
+std::string formulas_text(const std::vector<NumberOrFormula>& formulas, int dimension) {
+  std::string text = "[";
+  for (std::size_t i = 0; i < static_cast<std::size_t>(dimension); ++i) {
+    if (i > 0) text += ", ";
+    text += formulas[i].formula.empty() ? number_text(formulas[i].number) : in_quotes(formulas[i].formula);
+  }
+  return text + "]";
+}
+
 template <class Names>
 std::string join_quoted(const Names& names) {
   std::string text;
@@ -97,6 +106,7 @@ std::string value_text(const Key& key, const Value& value, int dimension) {
     std::string operator()(double d) const { return number_text(d); }
     std::string operator()(const std::string& s) const { return in_quotes(s); }
     std::string operator()(const std::vector<double>& v) const { return numbers_text(type, v, dimension); }
+    std::string operator()(const std::vector<NumberOrFormula>& v) const { return formulas_text(v, dimension); }
   };
   return std::visit(Visitor{key.type, dimension}, value);
 }
