@@ -32,8 +32,8 @@ Calibration calibrate(const Scene& scene, const WorldPlan& plan) {
   Scene small = scene;
   small.resolution.cell_size.reset();
   small.resolution.particles = std::min(plan.particles, kCalibrationParticles);
-  // A coarser grid would break periodic lengths of a whole number of blocks.
-  if (norm(scene.method.periodic) > 0) small = scene;
+  // A coarser grid would break periodic lengths of a whole number of blocks, and needs bodies to be found from.
+  if (norm(scene.method.periodic) > 0 || scene.bodies.empty()) small = scene;
   const LogSink sink = set_log_sink({});  // the meshes were judged once already
   const auto simulation = Simulation::create(small);
   Calibration calibration;

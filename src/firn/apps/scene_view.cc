@@ -46,6 +46,9 @@ View scene_view(const Scene& scene, double t) {
   for (const BodySettings& body : scene.bodies) {
     if (body.color) view.body_colors[body.name] = drawn_color(body.color);
   }
+  for (const EmitterSettings& emitter : scene.emitters) {
+    if (emitter.color) view.body_colors[emitter.name] = drawn_color(emitter.color);
+  }
   for (const ColliderSettings& collider : scene.colliders) draw_collider(collider, t, view);
   return view;
 }

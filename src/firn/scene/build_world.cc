@@ -3,6 +3,7 @@
 #include <firn/materials/model_info.h>
 #include <firn/scene/body_region.h>
 #include <firn/scene/build_world.h>
+#include <firn/scene/force_fields.h>
 #include <firn/scene/initial_velocity.h>
 #include <firn/seeding/sampling.h>
 #include <fmt/format.h>
@@ -81,6 +82,7 @@ WorldPlan plan_of(const Scene& scene, const Regions<dim>& regions) {
   const double particles_per_volume = resolution.cell_size
                                           ? resolution.particles_per_cell / std::pow(plan.cell_size, dim)
                                           : static_cast<double>(*resolution.particles) / volume;
+  plan.particle_volume = 1 / particles_per_volume;
   for (std::size_t b = 0; b < regions.size(); ++b) {
     const double wanted = regions[b]->volume() * particles_per_volume;
     if (!(wanted < std::numeric_limits<std::int32_t>::max())) {
@@ -180,6 +182,7 @@ BuiltWorld<Real, dim> build_world(const Scene& scene) {
   WorldPlan plan = plan_of<dim>(scene, regions);
   World<Real, dim> world(plan.cell_size, transfer_of(scene.method), period_of<dim>(scene, plan.cell_size));
   world.gravity = cut<dim>(scene.gravity);
+  world.body_force = force_of<dim>(scene);
   for (const ColliderSettings& collider : scene.colliders) world.colliders.push_back(collider_of<dim>(collider));
   for (const MaterialSettings& material : scene.materials) {
     const int model = model_number(material.model);

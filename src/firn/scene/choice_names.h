@@ -50,4 +50,17 @@ struct ChoiceNames<ColliderSettings::Contact> {
   static constexpr std::string_view list[] = {"sticky", "slip", "separate"};
 };
 
+template <>
+struct ChoiceNames<FieldSettings::Type> {
+  static constexpr std::string_view list[] = {"acceleration", "attractor", "vortex", "wind"};
+};
+template <>
+struct ChoiceNames<PinSettings::Shape> {
+  static constexpr std::string_view list[] = {"box", "sphere"};
+};
+template <>
+struct ChoiceNames<ProbeSettings::Shape> {
+  static constexpr std::string_view list[] = {"point", "line", "plane"};
+};
+
 }  // namespace firn

@@ -107,7 +107,10 @@ std::string scene_json_schema() {
         break;
     }
   }
-  for (const std::string_view name : {"resolution", "material", "body"}) root["required"].push_back(name);
+  for (const std::string_view name : {"resolution", "material"}) root["required"].push_back(name);
+  for (const std::string_view name : {"body", "emitter"}) {
+    root["anyOf"].push_back({{"required", Json::array({name})}});
+  }
   return root.dump(2) + "\n";
 }
 

@@ -1,23 +1,11 @@
 #include <firn/scene/choice_names.h>
 #include <firn/scene/schema_table.h>
+#include <firn/scene/section_builder.h>
 
 namespace firn {
 namespace {
 
 using K = KeyBuilder;
-
-/// A section that is a list of structs of the scene.
-template <class Settings>
-Section list(std::string_view name, std::vector<Settings> Scene::*member, std::string_view help) {
-  Section section;
-  section.kind = SectionKind::list;
-  section.name = name;
-  section.help = help;
-  section.count = [member](const Scene& scene) { return (scene.*member).size(); };
-  section.add = [member](Scene& scene) -> void* { return &(scene.*member).emplace_back(); };
-  section.at = [member](Scene& scene, std::size_t i) -> void* { return &(scene.*member)[i]; };
-  return section;
-}
 
 std::vector<Key> body_shape_keys() {
   return {
@@ -49,7 +37,7 @@ std::vector<Key> body_shape_keys() {
 }  // namespace
 
 Section make_body_section() {
-  Section section = list("body", &Scene::bodies, "Something made of particles; one [[body]] each.");
+  Section section = list_section("body", &Scene::bodies, "Something made of particles; one [[body]] each.");
   section.exactly_one_of = {{"mesh", "polygon", "shape"}};
   section.keys = body_shape_keys();
   const std::vector<Key> more = {
@@ -109,7 +97,7 @@ std::vector<Key> collider_shape_keys() {
 }  // namespace
 
 Section make_collider_section() {
-  Section section = list("collider", &Scene::colliders, "A rigid obstacle; one [[collider]] each.");
+  Section section = list_section("collider", &Scene::colliders, "A rigid obstacle; one [[collider]] each.");
   section.keys = collider_shape_keys();
   const std::vector<Key> more = {
       K("position", &ColliderSettings::position)

@@ -196,9 +196,21 @@ Section output() {
 }  // namespace
 
 std::vector<Section> make_schema() {
-  return {
-      root(),   resolution(), method(), limits(), make_material_section(), make_body_section(), make_collider_section(),
-      camera(), render(),     output()};
+  return {root(),
+          resolution(),
+          method(),
+          limits(),
+          make_material_section(),
+          make_body_section(),
+          make_collider_section(),
+          make_emitter_section(),
+          make_sink_section(),
+          make_field_section(),
+          make_pin_section(),
+          make_probe_section(),
+          camera(),
+          render(),
+          output()};
 }
 
 }  // namespace firn

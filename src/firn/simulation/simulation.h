@@ -1,14 +1,18 @@
 #pragma once
 
 #include <firn/integrators/time_step.h>
+#include <firn/measure/probe.h>
 #include <firn/measure/totals.h>
 #include <firn/scene/build_world.h>
 #include <firn/scene/settings.h>
+#include <firn/simulation/source_count.h>
 #include <firn/state/snapshot.h>
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace firn {
 
@@ -23,6 +27,7 @@ struct FrameReport {
   std::int64_t parked = 0;  ///< since the start
   int retries = 0;          ///< times that the frame was taken back and computed with smaller steps
   double wall_seconds = 0;
+  std::vector<SourceCount> emitted = {}, removed = {};  ///< by each emitter and each sink
 };
 
 /// A scene being simulated, whatever its dimension and precision: the one face of the library that the command line,
@@ -59,6 +64,9 @@ class Simulation {
 
   virtual Snapshot snapshot() const = 0;
   virtual Totals totals() const = 0;
+
+  /// Density, velocity and pressure at these points, m.
+  virtual std::vector<ProbeValue> probe(std::span<const Vec3d> points) const = 0;
 
   /// Seconds spent in each verb of the step since the start.
   virtual VerbTimes verb_times() const = 0;
