@@ -3,7 +3,7 @@ BUILD ?= build
 JOBS  ?= $(shell nproc)
 SCENE ?= scenes/snow_cube.toml
 
-.PHONY: all demo test build sanitize bench gallery format tidy dependencies clean
+.PHONY: all demo test verify build sanitize bench gallery format tidy dependencies clean
 
 all: build
 
@@ -23,6 +23,10 @@ sanitize: dependencies ## the tests under AddressSanitizer and UndefinedBehavior
 	cmake --build $(BUILD)-sanitize --parallel $(JOBS) --target firn_tests
 	FIRN_SIMD=baseline ctest --test-dir $(BUILD)-sanitize --output-on-failure --no-tests=error --parallel $(JOBS) -L sanitize
 	FIRN_SIMD=avx2 ctest --test-dir $(BUILD)-sanitize --output-on-failure --no-tests=error --parallel $(JOBS) -L sanitize
+
+verify: build ## the problems of docs/verification-scenes.md at full resolution; rewrites its tables
+	cmake --build $(BUILD) --parallel $(JOBS) --target firn_verify
+	$(BUILD)/tests/verification_scenes/firn_verify
 
 bench: build ## particle-steps per second, bytes per particle and the time of each verb of the step
 	$(BUILD)/firn bench

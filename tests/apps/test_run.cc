@@ -83,6 +83,8 @@ TEST_F(RunScene, SourcesAndProbesHaveTheirNumbers) {
             "end = [0.1, 0.9, 0]\ncount = 2\n");
   const ProgramResult result = run();
   ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const ProgramResult check = run_firn("check " + quoted(out("scene.resolved.toml")));
+  EXPECT_NE(check.output.find("emitter     gun: "), std::string::npos) << check.output << check.errors;
   const auto rows = read_table(out("stats.csv"));
   ASSERT_EQ(rows.size(), 5u);
   EXPECT_NEAR(std::stod(rows[4].at("emitted_mass_gun")), 0.2, 0.01);

@@ -130,6 +130,46 @@ TEST(Contact, AFrictionlessWheelDoesNotDependOnItsSpin) {
   }
 }
 
+TEST(Keyframes, CarryShapeAndContact) {
+  // A ball that grows, moves and turns: distance and velocity are those of its pose.
+  Collider<3> ball = {"ball", std::make_shared<Sphere<3>>(1.0), {}, Contact::sticky, 0};
+  ball.keyframes = std::make_shared<KeyframeMotion<3>>(
+      std::vector<Keyframe<3>>{{0, {}, identity<double, 3>(), 1}, {2, {{4, 0, 0}}, rotation_by(Vec3d{{0, 0, 1}}), 3}},
+      Interpolation::linear);
+  const PosedCollider<3> posed(ball, 1);
+  EXPECT_NEAR(posed.distance({{5, 0, 0}}), 1, 1e-14);
+  EXPECT_NEAR(posed.distance({{2, 1.5, 0}}), -0.5, 1e-14);
+  // At (3, 0, 0): 2 of the motion, 1 of the growth (1 / 2 per second), and 1/2 of the turn.
+  expect_near(posed.velocity({{3, 0, 0}}), {{2.5, 0.5, 0}});
+  expect_near(posed.admissible({{3, 0, 0}}, {{9, 9, 9}}), {{2.5, 0.5, 0}});
+}
+
+TEST(Keyframes, ThatSetOffAreFastOneStepEarly) {
+  Collider<3> piston = {"piston", std::make_shared<Sphere<3>>(1.0), {}, Contact::sticky, 0};
+  piston.keyframes = std::make_shared<KeyframeMotion<3>>(
+      std::vector<Keyframe<3>>{{1, {}, identity<double, 3>(), 1}, {2, {{50, 0, 0}}, identity<double, 3>(), 1}},
+      Interpolation::linear);
+  EXPECT_EQ(PosedCollider<3>(piston, 0.98, 0.01).fastest({}), 0);
+  EXPECT_NEAR(PosedCollider<3>(piston, 0.995, 0.01).fastest({}), 50, 1e-12);
+  EXPECT_EQ(norm(PosedCollider<3>(piston, 0.995, 0.01).velocity({})), 0);
+}
+
+TEST(Keyframes, AtConstantVelocityAreThatVelocity) {
+  auto steady = floor<3>(Contact::separate, 0.4);
+  steady.motion.velocity = {{0.5, 1, -2}};
+  auto framed = floor<3>(Contact::separate, 0.4);
+  framed.keyframes = std::make_shared<KeyframeMotion<3>>(
+      std::vector<Keyframe<3>>{{0, {}, identity<double, 3>(), 1}, {10, {{5, 10, -20}}, identity<double, 3>(), 1}},
+      Interpolation::linear);
+  test::Random random(4);
+  for (int n = 0; n < 100; ++n) {
+    const double t = random.uniform(0, 9);
+    const Vec3d x = kBelow + t * steady.motion.velocity;
+    const Vec3d v = {{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)}};
+    expect_near(PosedCollider<3>(framed, t).admissible(x, v), PosedCollider<3>(steady, t).admissible(x, v), 1e-13);
+  }
+}
+
 /// Coulomb's block on a slope, as a point that the contact is applied to after every step of gravity: it slides with
 /// g (sin a - mu cos a), or stays where mu >= tan a.
 template <int dim>

@@ -25,8 +25,8 @@ TEST(StatsTable, BeginsWithTheDeclaredColumns) {
   const StatsTable table(folder / "stats.csv", {"parked"});
   EXPECT_EQ(file_bytes(folder / "stats.csv"),
             "frame,time,steps,dt,limit,particles,mass,momentum_x,momentum_y,momentum_z,angular_momentum_x,"
-            "angular_momentum_y,angular_momentum_z,kinetic_energy,elastic_energy,gravitational_energy,max_speed,min_J,"
-            "max_J,wall_seconds,parked\n");
+            "angular_momentum_y,angular_momentum_z,kinetic_energy,elastic_energy,gravitational_energy,max_speed,volume,"
+            "volume_drift,min_J,max_J,wall_seconds,parked\n");
   for (const StatsColumn& column : stats_columns()) EXPECT_FALSE(column.help.empty()) << column.name;
 }
 
@@ -41,15 +41,15 @@ TEST(StatsTable, NumbersReadBackToTheSameBits) {
   table.append(row);
   const std::string text = file_bytes(folder / "stats.csv");
   const std::vector<std::string> fields = split(text.substr(text.find('\n') + 1));
-  ASSERT_EQ(fields.size(), 21U);
+  ASSERT_EQ(fields.size(), 23U);
   EXPECT_EQ(std::stod(fields[1]), 1.0 / 24);
   EXPECT_EQ(fields[2], "1234567890123");
   EXPECT_EQ(std::stod(fields[3]), 1e-4 / 3);
   EXPECT_EQ(fields[4], "elastic wave");
   EXPECT_EQ(std::strtod(fields[8].c_str(), nullptr), -std::numeric_limits<double>::denorm_min());
   EXPECT_EQ(std::stod(fields[12]), 0.1 + 0.2);
-  EXPECT_EQ(std::stod(fields[18]), std::numeric_limits<double>::max());
-  EXPECT_EQ(fields[20], "7");
+  EXPECT_EQ(std::stod(fields[20]), std::numeric_limits<double>::max());
+  EXPECT_EQ(fields[22], "7");
 }
 
 TEST(StatsTable, TextWithACommaIsQuoted) {

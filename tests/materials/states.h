@@ -61,9 +61,11 @@ void set_parameter(ModelParameters& parameters, std::string_view name, double va
 template <class Model>
 ModelParameters elastic_parameters() {
   ModelParameters parameters = default_parameters<Model>();
-  for (const char* strength : {"yield_stress", "cohesion", "preconsolidation_pressure", "shear_yield_stress"}) {
+  for (const char* strength :
+       {"yield_stress", "cohesion", "preconsolidation_pressure", "shear_yield_stress", "cracking_stress"}) {
     set_parameter<Model>(parameters, strength, 1e9);
   }
+  set_parameter<Model>(parameters, "fracture_energy", 1e12);
   set_parameter<Model>(parameters, "viscosity", 0);
   set_parameter<Model>(parameters, "relaxation_time", 1e12);
   return parameters;

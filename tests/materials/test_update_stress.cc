@@ -75,6 +75,11 @@ ModelParameters parameters_of(const ModelInfo& info) {
     parameters.values[2] = 0.1;
     parameters.values[3] = 0.05;
   }
+  if (info.name == "rankine_damage") {
+    // The same, eps over the strain at which it cracks.
+    parameters.values[2] = 1e4;
+    parameters.values[3] = 100;
+  }
   return parameters;
 }
 

@@ -9,29 +9,6 @@
 
 namespace firn::test {
 
-double number(std::string_view preset_name, std::string_view parameter) {
-  const Preset& preset = *find_preset(preset_name);
-  if (parameter == "density") return preset.density;
-  for (const Preset::Value& value : preset.values) {
-    if (value.parameter == parameter) return value.value;
-  }
-  ADD_FAILURE() << preset_name << " has no " << parameter;
-  return 0;
-}
-
-std::vector<PointState> drive(std::string_view preset_name, PointPath path, double strain, double pressure,
-                              double rate) {
-  const Preset& preset = *find_preset(preset_name);
-  PointRequest request;
-  request.model = model_number(preset.model);
-  request.parameters.density = preset.density;
-  for (const Parameter& p : find_model(preset.model)->parameters) {
-    request.parameters.values.push_back(number(preset_name, p.name));
-  }
-  request.path = path, request.strain = strain, request.pressure = pressure, request.rate = rate;
-  return drive_point(request);
-}
-
 std::unique_ptr<Simulation> simulate(const SceneLines& lines) {
   const std::string text =
       fmt::format("threads = 1\n{}\n[material.stuff]\npreset = \"{}\"\n{}", lines.top, lines.preset, lines.sections);

@@ -1,25 +1,17 @@
 #pragma once
 
-#include <firn/materials/model_info.h>
-#include <firn/materials/point_driver.h>
 #include <firn/simulation/simulation.h>
 
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "support/preset_points.h"
 
 /// Small scenes that show what a preset does. One thread, and coarse: a check takes seconds.
 namespace firn::test {
 
 inline constexpr double kGravity = 9.81;  // m/s^2
-
-/// A parameter of a preset, or its density.
-double number(std::string_view preset, std::string_view parameter);
-
-/// One point of a preset, driven along a path (point_driver.h).
-std::vector<PointState> drive(std::string_view preset, PointPath path, double strain, double pressure = 0,
-                              double rate = 1);
 
 /// A scene with one material, "stuff", of a preset; its other lines as given. The text may use a polygon of `folder`.
 struct SceneLines {

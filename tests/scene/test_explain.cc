@@ -99,8 +99,8 @@ TEST(JsonSchema, MirrorsTheTable) {
     }
   }
   const nlohmann::json& material = root["properties"]["material"]["additionalProperties"]["properties"];
-  EXPECT_EQ(material["poisson_ratio"]["exclusiveMaximum"], 0.5);
-  EXPECT_EQ(material["poisson_ratio"]["exclusiveMinimum"], -1);
+  EXPECT_EQ(material["poisson_ratio"]["anyOf"][0]["exclusiveMaximum"], 0.5);
+  EXPECT_EQ(material["poisson_ratio"]["anyOf"][0]["exclusiveMinimum"], -1);
 }
 
 }  // namespace

@@ -162,6 +162,14 @@ TEST(SceneHash, ChangesWithWhatDecidesTheParticlesOnly) {
   }
 }
 
+TEST(Films, PlayAsFastAsItHappenedUntilNobodyCouldFollow) {
+  const RenderSettings usual = parse(kMinimal).render;
+  EXPECT_EQ(usual.film_rate_of(24), 24);
+  EXPECT_EQ(usual.film_rate_of(1e6), 60);
+  EXPECT_EQ(parse(kMinimal, {"render.film_rate=12"}).render.film_rate_of(1e6), 12);
+  EXPECT_TRUE(matches(error_of(kMinimal, {"render.film_rate=0"}), ".*film_rate must be in \\(0, 240\\] 1/s, got 0.*"));
+}
+
 TEST(Materials, PresetsGiveNumbersThatKeysOverride) {
   const Scene scene = parse_scene(kFull, kFullPath);
   const MaterialSettings& snow = scene.materials[0];

@@ -1,5 +1,6 @@
 #include "scene/scene_text.h"
 
+#include <firn/scene/carried.h>
 #include <firn/scene/explain.h>
 #include <firn/scene/force_fields.h>
 #include <firn/scene/pin_collider.h>
@@ -7,6 +8,8 @@
 #include <firn/scene/resolved.h>
 
 #include <cmath>
+#include <tuple>
+#include <vector>
 
 namespace firn::test {
 namespace {
@@ -76,6 +79,46 @@ TEST(SourcesScene, OtherErrorsAreLocated) {
   EXPECT_TRUE(contains(error_of(with(kBall + "[[probe]]\nshape = \"line\"\nend = [1, 0, 0]\n")), "count"));
 }
 
+TEST(SourcesScene, MotionErrorsAreLocated) {
+  const std::string sink = "[[sink]]\nname = \"drain\"\nshape = \"sphere\"\nradius = 1\n";
+  const std::string arm = "[[collider]]\nname = \"arm\"\nshape = \"sphere\"\nradius = 1\n";
+  EXPECT_TRUE(
+      matches(error_of(with(kBall + arm + sink + "moves_with = \"amr\"\n")),
+              R"re(scene\.toml:18:\d+: sink "drain": no \[\[collider\]\] has the name "amr"; did you mean "arm"\?)re"));
+  EXPECT_TRUE(contains(error_of(with(kBall + sink + "moves_with = \"arm\"\n")),
+                       "sink \"drain\": no [[collider]] has the name \"arm\""));
+  const std::string frames = "keyframes = [{ time = 0 }, { time = 1, position = [1, 0, 0] }]\n";
+  EXPECT_TRUE(contains(error_of(with(kBall + arm + sink + frames + "moves_with = \"arm\"\n")),
+                       "sink \"drain\": moves_with excludes a motion of its own; keep one"));
+  EXPECT_TRUE(contains(error_of(with(kTap + "keep_full = true\nkeyframes = [{ time = 1 }, { time = 1 }]\n")),
+                       "emitter \"tap\": keyframes: entry 2: times must increase, got 1 s after 1 s"));
+  const std::string pin = "[[pin]]\nname = \"grip\"\nshape = \"sphere\"\nradius = 1\n";
+  EXPECT_TRUE(contains(error_of(with(kBall + arm + pin + "velocity = [1, 0, 0]\nmoves_with = \"arm\"\n")),
+                       "pin \"grip\": moves_with excludes a motion of its own; keep one"));
+  const std::string painted = with("youngs_modulus = { attribute = \"stiffness\" }\n" + kTap + "keep_full = true\n");
+  EXPECT_TRUE(contains(error_of(painted),
+                       "emitter \"tap\": material \"snow\" has its youngs_modulus painted on the mesh of a body"));
+}
+
+TEST(SourcesScene, TractionErrorsAreLocated) {
+  const std::string traction = "[[traction]]\nname = \"push\"\nshape = \"sphere\"\nradius = 1\n";
+  EXPECT_TRUE(contains(error_of(with(kBall + traction)), "traction \"push\": pressure or stress"));
+  EXPECT_TRUE(contains(error_of(with(kBall + traction + "pressure = 1\nstress = [1, 0, 0]\n")),
+                       "exclude each other; keep one"));
+  EXPECT_TRUE(contains(error_of(with(kBall + traction + "pressure = 1\nnormal = [1, 0, 0]\n")),
+                       "normal goes with stress; a pressure acts along the surface's own"));
+  EXPECT_TRUE(contains(error_of(with(kBall + traction + "stress = [\"t\", 0, 0]\n")),
+                       "a stress with a formula needs normal, the direction of the face it acts on"));
+  EXPECT_TRUE(contains(error_of(with(kBall + traction + "stress = [0, 0, 0]\n")), "normal must not be zero"));
+  EXPECT_TRUE(
+      contains(error_of(with(kBall + traction + "pressure = \"u\"\n")), "unknown name \"u\"; known are x, y, z, t"));
+  EXPECT_TRUE(contains(error_of(with(kBall + traction + "pressure = 1\nbody = \"bal\"\n")),
+                       "traction \"push\": no [[body]] has the name \"bal\"; did you mean \"ball\"?"));
+  const Scene scene = parse(with(kBall + traction + "stress = [0, 3, 4]\n"));
+  EXPECT_EQ(scene.tractions[0].normal[1], 0.6);
+  EXPECT_EQ(scene.tractions[0].normal[2], 0.8);
+}
+
 TEST(SourcesScene, ResolvedSceneReadsBack) {
   const std::string text = with(
       kTap +
@@ -83,6 +126,13 @@ TEST(SourcesScene, ResolvedSceneReadsBack) {
       "keep_full = true\n[[sink]]\nshape = \"sphere\"\nradius = 2\n" +
       "[[field]]\ntype = \"vortex\"\nradius = 1\nstrength = -2\naxis = [1, 1, 0]\n" +
       "[[field]]\ntype = \"acceleration\"\nacceleration = [\"sin(t)\", 0, \"x\"]\nbox = [[0, 0, 0], [1, 1, 1]]\n" +
+      "[[collider]]\nname = \"arm\"\nshape = \"sphere\"\nradius = 1\nvelocity = [1, 0, 0]\n" +
+      "[[sink]]\nshape = \"sphere\"\nradius = 2\nmoves_with = \"arm\"\n" +
+      "[[emitter]]\nshape = \"sphere\"\nradius = 1\nmaterial = \"snow\"\nkeep_full = true\n" +
+      "interpolation = \"smooth\"\nkeyframes = [{ time = 0 }, { time = 1, rotation = [0, 90, 0] }]\n" +
+      "[[pin]]\nshape = \"capsule\"\nradius = 0.5\nlength = 2\nmoves_with = \"arm\"\n" +
+      "[[traction]]\nshape = \"sphere\"\nradius = 1\nstress = [\"sin(t)\", 1, 0]\nnormal = [0, 2, 0]\n" +
+      "[[traction]]\nshape = \"sphere\"\nradius = 1\npressure = \"x * t\"\n" +
       "[[pin]]\nshape = \"sphere\"\nradius = 0.5\n[[probe]]\nshape = \"line\"\nend = [1, 0, 0]\ncount = 3\n");
   const std::string resolved = resolved_toml(parse(text));
   EXPECT_EQ(resolved_toml(parse(resolved)), resolved);
@@ -123,11 +173,71 @@ TEST(Pins, MoveFromTheirStartOn) {
   const Scene scene =
       parse(with(kBall + "[[pin]]\nshape = \"box\"\nsize = [2, 1, 1]\nposition = [1, 2, 3]\nrotation = [0, 0, 30]\n"
                          "velocity = [1, 0, 0]\nangular_velocity = [0, 0, 2]\nstart = 0.5\n"));
-  const Collider<3> collider = pin_collider<3>(scene.pins[0]);
+  const Collider<3> collider = pin_collider<3>(scene, scene.pins[0], 0.1);
   expect_vector(collider.motion.origin_at(0.5), {{1, 2, 3}});
   expect_vector(collider.motion.origin_at(1), {{1.5, 2, 3}});
   expect_vector(collider.motion.rotation_at(0.5) * Vec3d{{1, 0, 0}}, {{std::cos(M_PI / 6), 0.5, 0}});
   EXPECT_EQ(collider.contact, Contact::sticky);
+}
+
+TEST(Pins, RideOnTheirCollider) {
+  const Scene scene =
+      parse(with(kBall + "[[collider]]\nname = \"arm\"\nshape = \"sphere\"\nradius = 1\nposition = [1, 0, 0]\n"
+                         "rotation = [0, 30, 0]\nvelocity = [0, 1, 0]\nangular_velocity = [0, 0, 2]\n"
+                         "[[pin]]\nshape = \"box\"\nsize = [2, 1, 1]\nposition = [3, 0, 0]\nrotation = [0, 0, 45]\n"
+                         "moves_with = \"arm\"\n"));
+  const Collider<3> pin = pin_collider<3>(scene, scene.pins[0], 0.1);
+  EXPECT_TRUE(pin.is_filled);
+  const double t = 0.7, c = std::cos(2 * t), s = std::sin(2 * t);
+  const PosedCollider<3> now(pin, t);
+  // Its centre is half a metre inside, and goes around the arm's.
+  const Vec3d centre = {{1 + 2 * c, t + 2 * s, 0}};
+  EXPECT_NEAR(now.distance(centre), -0.5, 1e-12);
+  expect_vector(now.velocity(centre), {{-4 * s, 1 + 4 * c, 0}});
+  const double q = 2 * t + M_PI / 4;
+  EXPECT_NEAR(now.distance(centre + Vec3d{{1.5 * std::cos(q), 1.5 * std::sin(q), 0}}), 0.5, 1e-12) << "its long way";
+}
+
+TEST(Carried, IsWhereItsCarrierTakesIt) {
+  const std::string arm =
+      "[[collider]]\nname = \"arm\"\nshape = \"sphere\"\nradius = 1\nposition = [1, 2, 0]\nrotation = [20, 30, 40]\n"
+      "interpolation = \"smooth\"\nkeyframes = [{ time = -1, position = [0, 0, 0], rotation = [0, 10, 50] }, "
+      "{ time = 0.5 }, { time = 2, position = [3, 0, 1], rotation = [90, 30, 0], scale = 2 }]\n";
+  const Scene scene =
+      parse(with(kBall + arm + "[[sink]]\nshape = \"sphere\"\nradius = 1\nposition = [4, 0, 1]\n" +
+                 "moves_with = \"arm\"\n[[sink]]\nshape = \"sphere\"\nradius = 1\n" + "position = [4, 0, 1]\n"));
+  const Carried<3> carried(scene, scene.sinks[0]), still(scene, scene.sinks[1]);
+  EXPECT_TRUE(carried.moves());
+  EXPECT_FALSE(still.moves());
+  const Vec3d x = {{0.3, -0.7, 2}};
+  expect_vector(to_world<3>(carried.pose_at(0), x), x);
+  expect_vector(to_world<3>(still.pose_at(9), x), x);
+  // A point of the collider's own frame stays that point.
+  const KeyframeMotion<3> motion(
+      [] {
+        std::vector<Keyframe<3>> frames;
+        for (const auto& [t, p, d, s] : {std::tuple(-1.0, Vec3d{{0, 0, 0}}, Vec3d{{0, 10, 50}}, 1.0),
+                                         std::tuple(0.5, Vec3d{{1, 2, 0}}, Vec3d{{20, 30, 40}}, 1.0),
+                                         std::tuple(2.0, Vec3d{{3, 0, 1}}, Vec3d{{90, 30, 0}}, 2.0)}) {
+          frames.push_back({t, p, rotation_from_degrees(d), s});
+        }
+        return frames;
+      }(),
+      Interpolation::smooth);
+  const Vec3d own = to_frame<3>(motion.pose_at(0), x);
+  for (const double t : {-2.0, -0.5, 0.9, 1.7, 3.0}) {
+    const Vec3d there = to_world<3>(motion.pose_at(t), own);
+    const Pose<3> pose = carried.pose_at(t);
+    EXPECT_NEAR(norm(to_world<3>(pose, x) - there), 0, 1e-12) << t;
+    EXPECT_NEAR(norm(pose.velocity_at(there) - motion.pose_at(t).velocity_at(there)), 0, 1e-12) << t;
+    EXPECT_NEAR(norm(to_frame<3>(pose, there) - x), 0, 1e-12) << t;
+    constexpr double h = 1e-6;
+    const Vec3d slope = (0.5 / h) * (to_world<3>(carried.pose_at(t + h), x) - to_world<3>(carried.pose_at(t - h), x));
+    EXPECT_NEAR(norm(pose.velocity_at(there) - slope), 0, 1e-6) << t;
+  }
+  const auto region = still.region(scene);
+  EXPECT_NEAR(carried.fastest(region->bounds(), 3, 9), 0, 0) << "at rest after the last keyframe";
+  EXPECT_GT(carried.fastest(region->bounds(), 0.5, 2), 1);
 }
 
 TEST(Probes, HaveTheirPoints) {

@@ -58,7 +58,20 @@ TEST(Simulation, StartsWithTheBodysMassMomentumAndSpin) {
     // L about the origin = m (x v_y - y v_x) + I omega, with I = m R^2 / 2.
     EXPECT_NEAR(totals.angular_momentum[2], mass * (-0.3) + 0.5 * mass * 0.04 * 4, 0.03 * mass);
     EXPECT_EQ(totals.min_J, 1);
+    EXPECT_NEAR(totals.volume, area, tolerance * area);
+    EXPECT_EQ(totals.volume_drift(), 0);
   }
+}
+
+TEST(Simulation, VolumeDriftIsTheMeanOfTheVolumeRatios) {
+  const auto simulation = make(disk_scene(kJelly));
+  while (std::abs(simulation->totals().volume_drift()) < 1e-3 && simulation->frame() < 20) simulation->advance_frame();
+  const Snapshot snapshot = simulation->snapshot();
+  double sum = 0;
+  for (std::size_t p = 0; p < snapshot.size(); ++p) sum += value(*snapshot.find("J"), p);
+  const double drift = sum / static_cast<double>(snapshot.size()) - 1;  // all particles of the disk are equal
+  EXPECT_GT(std::abs(drift), 1e-3);
+  EXPECT_NEAR(simulation->totals().volume_drift(), drift, 1e-6);
 }
 
 TEST(Simulation, PeriodicLengthsAreWholeBlocksWhateverTheNumberOfParticles) {
@@ -126,6 +139,24 @@ TEST(Simulation, AFailingFrameIsTakenBackAndComputedWithSmallerSteps) {
   ASSERT_FALSE(log.lines.empty());
   EXPECT_NE(log.lines.back().find("taking frame"), std::string::npos) << log.lines.back();
   EXPECT_TRUE(std::isfinite(simulation->totals().kinetic_energy));
+}
+
+TEST(Simulation, AFrameThatFailsWithAllStepsLeavesTheLastGoodOne) {
+  const LogCapture log;
+  std::string text = crash_scene("");
+  text.replace(text.find("-3000"), 5, "-3e6");
+  const auto simulation = make(text);
+  const std::uint64_t before = simulation->hash();
+  const std::int64_t particles = simulation->report().particles;
+  EXPECT_THROW(
+      {
+        for (int frame = 2; frame <= 3; ++frame) simulation->advance_frame();
+      },
+      Error);
+  EXPECT_EQ(simulation->hash(), before);
+  EXPECT_EQ(simulation->report().frame, 1);
+  EXPECT_EQ(simulation->report().time, 0);
+  EXPECT_EQ(simulation->report().particles, particles);
 }
 
 TEST(Simulation, WithoutRollbackAFailureIsAReport) {

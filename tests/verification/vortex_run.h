@@ -1,5 +1,6 @@
 #pragma once
 
+#include <firn/geometry/combined_shapes.h>
 #include <firn/geometry/shapes.h>
 #include <firn/integrators/step.h>
 
@@ -12,18 +13,6 @@
 #include "verification/manufactured_motions.h"
 
 namespace firn::test {
-
-/// Everything beyond a circle about the origin.
-class OutsideOfDisk final : public Shape<2> {
- public:
-  explicit OutsideOfDisk(double radius) : radius_(radius) {}
-
-  double distance(const Vec<double, 2>& x) const override { return radius_ - norm(x); }
-  Vec<double, 2> normal(const Vec<double, 2>& x) const override { return -normalized(x); }
-
- private:
-  double radius_;
-};
 
 /// Points of a lattice with `per_cell` points per cell and axis that lie in the vortex' ring.
 inline std::vector<Vec<double, 2>> ring_points(double dx, int per_cell) {
@@ -55,7 +44,7 @@ inline double vortex_error(int cells, double centripetal_sign = -1, const Transf
                              .motion = {},
                              .contact = Contact::sticky});
   world.colliders.push_back({.name = "outer rim",
-                             .shape = std::make_shared<OutsideOfDisk>(Motion::kOuterRadius),
+                             .shape = std::make_shared<Inverse<2>>(std::make_shared<Sphere<2>>(Motion::kOuterRadius)),
                              .motion = {},
                              .contact = Contact::sticky});
   world.add_material("solid", model_number("neo_hookean"), elastic(kYoungsModulus, kPoissonRatio, kDensity));

@@ -15,6 +15,7 @@ namespace {
 struct PointOptions {
   std::string material, path = "shear", output;
   std::vector<std::string> settings;
+  double cell_size = 0.01;  ///< m
   PointRequest request;
 };
 
@@ -67,6 +68,9 @@ void run_point(const PointOptions& options) {
   request.path = *path;
   request.model = model_number(material.model->name);
   request.parameters = material.parameters;
+  request.parameters.cell_size = options.cell_size;
+  const std::string refusal = material.model->refusal == nullptr ? "" : material.model->refusal(request.parameters);
+  if (!refusal.empty()) throw Error(ErrorKind::usage, fmt::format("{}: {}", options.material, refusal));
   const std::vector<PointState> states = drive_point(request);
   const std::string stem =
       options.output.empty() ? fmt::format("{}_{}", options.material, options.path) : options.output;
@@ -90,6 +94,8 @@ void add_point(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--rate", request.rate, "Rate of strain, 1/s")->capture_default_str();
   command->add_option("--pressure", request.pressure, "Pressure all round before the path begins, Pa")
+      ->capture_default_str();
+  command->add_option("--cell-size", options->cell_size, "Of the grid that the point stands for, m")
       ->capture_default_str();
   command->add_option("--steps", request.steps, "Steps of the whole path")->capture_default_str();
   command->add_option("--cycles", request.cycles, "Cycles of the cyclic path")->capture_default_str();

@@ -28,6 +28,7 @@ void render_run(const RenderOptions& options) {
                                               folder.scene().filename().string()));
   }
   const Scene scene = load_scene(folder.scene(), options.set);
+  const SceneDrawing drawing(scene);
   const auto series = read_frame_series(folder.particles() / kFrameSeriesName);
   const auto count = static_cast<std::int64_t>(series.size());
   if (options.frame < 0 || options.frame > count) {
@@ -37,14 +38,15 @@ void render_run(const RenderOptions& options) {
   std::filesystem::create_directories(target.images());
   std::unique_ptr<Film> film;
   if (options.frame == 0 && scene.render.film && program_exists("ffmpeg")) {
-    film = std::make_unique<Film>(target.film(), scene.render.width, scene.render.height, scene.frame_rate);
+    film = std::make_unique<Film>(target.film(), scene.render.width, scene.render.height,
+                                  scene.render.film_rate_of(scene.frame_rate));
   }
   std::optional<Camera> camera;
   for (std::int64_t frame = options.frame == 0 ? 1 : options.frame;
        frame <= (options.frame == 0 ? count : options.frame); ++frame) {
     const SeriesFrame& entry = series[static_cast<std::size_t>(frame - 1)];
     const Snapshot snapshot = read_frame(folder.particles() / entry.name, nullptr);
-    View view = scene_view(scene, snapshot.time);
+    View view = drawing.view_at(snapshot.time);
     if (!view.camera) {
       if (!camera) camera = automatic_camera(snapshot, view);
       view.camera = camera;

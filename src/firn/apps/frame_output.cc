@@ -1,5 +1,4 @@
 #include <firn/apps/frame_output.h>
-#include <firn/apps/scene_view.h>
 #include <firn/core/log.h>
 #include <firn/io/frame_series.h>
 #include <firn/io/frame_writer.h>
@@ -41,6 +40,8 @@ StatsRow row_of(const FinishedFrame& frame) {
   row.elastic_energy = totals.elastic_energy;
   row.gravitational_energy = totals.gravitational_energy;
   row.max_speed = totals.max_speed;
+  row.volume = totals.volume;
+  row.volume_drift = totals.volume_drift();
   row.min_J = totals.min_J;
   row.max_J = totals.max_J;
   row.wall_seconds = frame.report.wall_seconds;
@@ -91,13 +92,14 @@ struct FrameOutput::Files {
 
 FrameOutput::FrameOutput(const Scene& scene, const RunFolder& folder)
     : scene_(scene),
+      drawing_(scene_),
       folder_(folder),
       files_(new Files{StatsTable(folder.stats(), further_columns(scene)), {}, metadata_of(scene)}) {
   for (const ProbeSettings& probe : scene.probes) files_->probes.emplace_back(folder.probe(probe.name));
   if (scene.render.film && scene.render.every_nth > 0) {
     if (program_exists("ffmpeg")) {
       film_ = std::make_unique<Film>(folder.film(), scene.render.width, scene.render.height,
-                                     scene.frame_rate / scene.render.every_nth);
+                                     scene.render.film_rate_of(scene.frame_rate / scene.render.every_nth));
     } else {
       log_warning("there is no ffmpeg, so the pictures stay without a film; install the package ffmpeg");
     }
@@ -175,7 +177,7 @@ void FrameOutput::write(const FinishedFrame& frame) {
 void FrameOutput::draw(const FinishedFrame& frame) {
   const int every = scene_.render.every_nth;
   if (every == 0 || (frame.report.frame - 1) % every != 0) return;
-  View view = scene_view(scene_, frame.snapshot.time);
+  View view = drawing_.view_at(frame.snapshot.time);
   if (!view.camera) {
     if (!camera_) camera_ = automatic_camera(frame.snapshot, view);
     view.camera = camera_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <firn/apps/run_folder.h>
+#include <firn/apps/scene_view.h>
 #include <firn/io/probe_table.h>
 #include <firn/render/film.h>
 #include <firn/render/scene_view.h>
@@ -54,6 +55,7 @@ class FrameOutput {
   struct Files;
 
   const Scene scene_;
+  const SceneDrawing drawing_;
   const RunFolder folder_;
   std::unique_ptr<Files> files_;
   std::unique_ptr<Film> film_;

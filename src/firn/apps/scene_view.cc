@@ -1,6 +1,8 @@
 #include <firn/apps/scene_view.h>
-#include <firn/geometry/motion.h>
-#include <firn/scene/body_region.h>
+#include <firn/scene/collider_shape.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace firn {
 namespace {
@@ -10,26 +12,96 @@ Vec3f drawn_color(const std::optional<Vec3d>& color) {
   return {{static_cast<float>((*color)[0]), static_cast<float>((*color)[1]), static_cast<float>((*color)[2])}};
 }
 
-void draw_collider(const ColliderSettings& collider, double t, View& view) {
-  const RigidMotion<3> motion = {collider.position, rotation_from_degrees(collider.rotation), collider.velocity,
-                                 collider.angular_velocity};
+/// Cells along the longest side of a drawn surface.
+constexpr int kSurfaceCells = 128;
+
+Pose<3> in_space(const Pose<3>& pose) { return pose; }
+Pose<3> in_space(const Pose<2>& flat) {
+  Pose<3> pose;
+  pose.scale = flat.scale;
+  for (int i = 0; i < 2; ++i) {
+    pose.origin[i] = flat.origin[i];
+    for (int j = 0; j < 2; ++j) pose.rotation(i, j) = flat.rotation(i, j);
+  }
+  return pose;
+}
+
+/// Where an endless solid is cut off: far around everything that has a place in the scene.
+template <int dim>
+Bounds<dim> drawn_space(const Scene& scene) {
+  double reach = 1;
+  const auto include = [&](const Vec3d& position, double size) {
+    for (int i = 0; i < 3; ++i) reach = std::max(reach, 3 * (std::abs(position[i]) + size));
+  };
+  for (const BodySettings& body : scene.bodies) include(body.position, body.scale * (norm(body.size) + body.radius));
+  for (const ColliderSettings& collider : scene.colliders) {
+    include(collider.position, norm(collider.size) + collider.radius + collider.length);
+  }
+  return {constant_vector<double, dim>(-reach), constant_vector<double, dim>(reach)};
+}
+
+double longest_side(const std::optional<TriangleMesh>& mesh, const Scene& scene) {
+  return (mesh ? bounds(*mesh) : drawn_space<3>(scene)).largest_side();
+}
+
+ShapeSurface drawn_surface(const Scene& scene, const ColliderSettings& settings, const ShapePointer<3>&) {
+  std::optional<TriangleMesh> mesh = collider_mesh(scene, settings);
+  if (mesh && !settings.inverted) return surface_of(std::move(*mesh));
+  const auto shape = collider_shape<3>(scene, settings, longest_side(mesh, scene) / kSurfaceCells);
+  return surface_of(*shape, drawn_space<3>(scene), kSurfaceCells);
+}
+
+ShapeSurface drawn_surface(const Scene& scene, const ColliderSettings&, const ShapePointer<2>& section) {
+  return filled_section_of(*section, drawn_space<2>(scene));
+}
+
+/// Whether a View has a kind of its own for this shape.
+bool has_own_kind(const ColliderSettings& collider) {
+  using Shape = ShapeSettings::Shape;
+  return !collider.inverted &&
+         (collider.shape == Shape::half_space || collider.shape == Shape::box || collider.shape == Shape::sphere);
+}
+
+void draw_own_kind(const ColliderSettings& collider, const Pose<3>& pose, View& view) {
   const Vec3f color = drawn_color(collider.color);
-  switch (collider.shape) {
-    case ColliderSettings::Shape::half_space:
-      view.half_spaces.push_back({motion.origin_at(t), motion.rotation_at(t) * collider.normal, color});
-      break;
-    case ColliderSettings::Shape::box:
-      view.boxes.push_back({motion.origin_at(t), motion.rotation_at(t), 0.5 * collider.size, color});
-      break;
-    case ColliderSettings::Shape::sphere:
-      view.spheres.push_back({motion.origin_at(t), collider.radius, color});
-      break;
+  if (collider.shape == ShapeSettings::Shape::half_space) {
+    view.half_spaces.push_back({pose.origin, pose.rotation * collider.normal, color});
+  } else if (collider.shape == ShapeSettings::Shape::box) {
+    view.boxes.push_back({pose.origin, pose.rotation, 0.5 * pose.scale * collider.size, color});
+  } else {
+    view.spheres.push_back({pose.origin, pose.scale * collider.radius, color});
   }
 }
 
 }  // namespace
 
-View scene_view(const Scene& scene, double t) {
+SceneDrawing::SceneDrawing(const Scene& scene) : scene_(scene) {
+  for (const ColliderSettings& collider : scene.colliders) {
+    if (scene.dimension == 2) add<2>(collider);
+    if (scene.dimension == 3) add<3>(collider);
+  }
+}
+
+template <int dim>
+void SceneDrawing::add(const ColliderSettings& settings) {
+  Collider<dim> moving;
+  set_motion<dim>(scene_, settings, moving);
+  Drawn drawn = {&settings, [moving](double t) { return in_space(moving.pose_at(t)); }, {}};
+  if (!has_own_kind(settings)) {
+    ShapePointer<dim> shape;
+    if constexpr (dim == 2) {
+      shape = collider_shape<2>(scene_, settings, 0);
+      drawn.solid.section = shape;
+    }
+    drawn.solid.surface = std::make_shared<ShapeSurface>(drawn_surface(scene_, settings, shape));
+    drawn.solid.color = drawn_color(settings.color);
+    drawn.solid.endless = dim == 3 && settings.inverted;
+  }
+  colliders_.push_back(std::move(drawn));
+}
+
+View SceneDrawing::view_at(double t) const {
+  const Scene& scene = scene_;
   View view;
   view.width = scene.render.width;
   view.height = scene.render.height;
@@ -49,7 +121,17 @@ View scene_view(const Scene& scene, double t) {
   for (const EmitterSettings& emitter : scene.emitters) {
     if (emitter.color) view.body_colors[emitter.name] = drawn_color(emitter.color);
   }
-  for (const ColliderSettings& collider : scene.colliders) draw_collider(collider, t, view);
+  for (const Drawn& drawn : colliders_) {
+    const Pose<3> pose = drawn.pose_at(t);
+    if (!drawn.solid.surface) {
+      draw_own_kind(*drawn.settings, pose, view);
+      continue;
+    }
+    DrawnSolid& solid = view.solids.emplace_back(drawn.solid);
+    solid.origin = pose.origin;
+    solid.rotation = pose.rotation;
+    solid.scale = pose.scale;
+  }
   return view;
 }
 

@@ -1,11 +1,35 @@
 #pragma once
 
+#include <firn/geometry/motion.h>
 #include <firn/render/scene_view.h>
 #include <firn/scene/settings.h>
 
+#include <functional>
+#include <vector>
+
 namespace firn {
 
-/// How the scene asks to be drawn: size, colours, camera and, where they are at time t, its colliders.
-View scene_view(const Scene& scene, double t);
+/// Draws the colliders of a scene: what does not change with time is made once.
+class SceneDrawing {
+ public:
+  /// The scene must outlive this. Throws Error as collider_shape() and set_motion().
+  explicit SceneDrawing(const Scene& scene);
+
+  /// How the scene asks to be drawn: size, colours, camera and, where they are at time t, its colliders.
+  View view_at(double t) const;
+
+ private:
+  struct Drawn {
+    const ColliderSettings* settings;
+    std::function<Pose<3>(double)> pose_at;
+    DrawnSolid solid;  ///< without a surface for what has its own kind in a View
+  };
+
+  template <int dim>
+  void add(const ColliderSettings& settings);
+
+  const Scene& scene_;
+  std::vector<Drawn> colliders_;
+};
 
 }  // namespace firn

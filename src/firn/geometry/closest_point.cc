@@ -36,8 +36,9 @@ Vec3d closest_point_of(const TriangleBvh::Triangle& triangle, const Vec3d& x) {
   return a + (vb / sum) * ab + (vc / sum) * ac;
 }
 
-ClosestPoint closest_point(const TriangleBvh& tree, const Vec3d& x) {
-  double best = std::numeric_limits<double>::infinity();
+ClosestPoint closest_point(const TriangleBvh& tree, const Vec3d& x, double within) {
+  // A little more, so that rounding cannot hide the answer.
+  double best = within * within * (1 + 1e-9) + std::numeric_limits<double>::min();
   ClosestPoint result;
   std::uint32_t stack[TriangleBvh::kMaxDepth];
   int depth = 0;

@@ -2,6 +2,8 @@
 
 #include <firn/geometry/triangle_bvh.h>
 
+#include <limits>
+
 namespace firn {
 
 struct ClosestPoint {
@@ -13,7 +15,9 @@ struct ClosestPoint {
 /// The point of a triangle nearest to x. Ericson 2004, "Real-Time Collision Detection", 5.1.5.
 Vec3d closest_point_of(const TriangleBvh::Triangle& triangle, const Vec3d& x);
 
-/// The point of the surface nearest to x. The mesh must have triangles.
-ClosestPoint closest_point(const TriangleBvh& tree, const Vec3d& x);
+/// The point of the surface nearest to x. The mesh must have triangles. `within`, m, is a distance that the answer is
+/// known not to exceed: it shortens the search.
+ClosestPoint closest_point(const TriangleBvh& tree, const Vec3d& x,
+                           double within = std::numeric_limits<double>::infinity());
 
 }  // namespace firn

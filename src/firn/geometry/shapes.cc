@@ -4,23 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace firn {
 namespace {
-
-/// v / |v|, also where |v|^2 underflows or overflows; the first axis for a zero vector.
-template <int dim>
-Vec<double, dim> direction(const Vec<double, dim>& v) {
-  double largest = 0;
-  for (int i = 0; i < dim; ++i) largest = std::max(largest, std::abs(v[i]));
-  Vec<double, dim> scaled = {};
-  if (largest == 0) {
-    scaled[0] = 1;
-    return scaled;
-  }
-  for (int i = 0; i < dim; ++i) scaled[i] = v[i] / largest;
-  return normalized(scaled);
-}
 
 /// Signed distance to each pair of faces.
 template <int dim>
@@ -31,6 +18,11 @@ Vec<double, dim> face_distances(const Vec<double, dim>& x, const Vec<double, dim
 }
 
 }  // namespace
+
+void require_positive(const char* shape, const char* what, double value) {
+  if (value > 0 && std::isfinite(value)) return;
+  throw Error(ErrorKind::usage, fmt::format("{}: {} must be positive, got {}", shape, what, value));
+}
 
 template <int dim>
 HalfSpace<dim>::HalfSpace(const Vec<double, dim>& normal) : normal_(direction(normal)) {
@@ -54,11 +46,7 @@ Vec<double, dim> HalfSpace<dim>::normal(const Vec<double, dim>&) const {
 
 template <int dim>
 Box<dim>::Box(const Vec<double, dim>& half_extents) : half_extents_(half_extents) {
-  for (int i = 0; i < dim; ++i) {
-    if (!(half_extents[i] > 0) || !std::isfinite(half_extents[i])) {
-      throw Error(ErrorKind::usage, fmt::format("box: half extent {} must be positive, got {}", i, half_extents[i]));
-    }
-  }
+  for (int i = 0; i < dim; ++i) require_positive("box", "every half extent", half_extents[i]);
 }
 
 template <int dim>
@@ -90,9 +78,7 @@ Vec<double, dim> Box<dim>::normal(const Vec<double, dim>& x) const {
 
 template <int dim>
 Sphere<dim>::Sphere(double radius) : radius_(radius) {
-  if (!(radius > 0) || !std::isfinite(radius)) {
-    throw Error(ErrorKind::usage, fmt::format("sphere: radius must be positive, got {}", radius));
-  }
+  require_positive("sphere", "radius", radius);
 }
 
 template <int dim>
@@ -103,6 +89,22 @@ double Sphere<dim>::distance(const Vec<double, dim>& x) const {
 template <int dim>
 Vec<double, dim> Sphere<dim>::normal(const Vec<double, dim>& x) const {
   return direction(x);
+}
+
+template <int dim>
+Bounds<dim> HalfSpace<dim>::bounds() const {
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  return {constant_vector<double, dim>(-kEndless), constant_vector<double, dim>(kEndless)};
+}
+
+template <int dim>
+Bounds<dim> Box<dim>::bounds() const {
+  return {-half_extents_, half_extents_};
+}
+
+template <int dim>
+Bounds<dim> Sphere<dim>::bounds() const {
+  return {constant_vector<double, dim>(-radius_), constant_vector<double, dim>(radius_)};
 }
 
 template class HalfSpace<2>;

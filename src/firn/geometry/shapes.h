@@ -13,6 +13,8 @@ class HalfSpace final : public Shape<dim> {
 
   double distance(const Vec<double, dim>& x) const override;
   Vec<double, dim> normal(const Vec<double, dim>& x) const override;
+  Bounds<dim> bounds() const override;
+  bool is_bounded() const override { return false; }
 
  private:
   Vec<double, dim> normal_;
@@ -28,6 +30,7 @@ class Box final : public Shape<dim> {
   double distance(const Vec<double, dim>& x) const override;
   /// Where several faces are equally near (edges seen from inside, the centre) the first axis wins, its positive side.
   Vec<double, dim> normal(const Vec<double, dim>& x) const override;
+  Bounds<dim> bounds() const override;
 
   const Vec<double, dim>& half_extents() const { return half_extents_; }
 
@@ -45,6 +48,7 @@ class Sphere final : public Shape<dim> {
   double distance(const Vec<double, dim>& x) const override;
   /// At the centre, the first axis.
   Vec<double, dim> normal(const Vec<double, dim>& x) const override;
+  Bounds<dim> bounds() const override;
 
   double radius() const { return radius_; }
 

@@ -15,8 +15,9 @@ namespace firn {
 template <int dim>
 class BlockColliders {
  public:
-  BlockColliders(const std::vector<Collider<dim>>& colliders, double t, double dx) : dx_(dx) {
-    for (const Collider<dim>& collider : colliders) posed_.emplace_back(collider, t);
+  /// @param ahead how much later than t the next step may end, s
+  BlockColliders(const std::vector<Collider<dim>>& colliders, double t, double dx, double ahead = 0) : dx_(dx) {
+    for (const Collider<dim>& collider : colliders) posed_.emplace_back(collider, t, ahead);
   }
 
   /// @param block block key; shift where its lowest cell's content begins, in cells from the cell's first node

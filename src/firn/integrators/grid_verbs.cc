@@ -1,11 +1,10 @@
 #include <firn/core/parallel.h>
 #include <firn/integrators/block_colliders.h>
+#include <firn/integrators/speed_bound.h>
 #include <firn/integrators/verb_timer.h>
 #include <firn/integrators/verbs.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 
 namespace firn {
@@ -73,7 +72,7 @@ double apply_colliders(std::span<const PosedCollider<dim>* const> colliders, std
     const Vec<double, dim> x = node_position<dim>(block, n, dx);
     for (const PosedCollider<dim>* collider : colliders) {
       if (!(collider->distance(x) < 0)) continue;
-      fastest = std::max(fastest, norm(collider->velocity(x)));
+      fastest = std::max(fastest, collider->fastest(x));
       Vec<double, dim> v;
       for (int i = 0; i < dim; ++i) v[i] = node[i];
       const Vec<double, dim> w = collider->admissible(x, v);
@@ -89,67 +88,11 @@ double apply_colliders(std::span<const PosedCollider<dim>* const> colliders, std
 
 }  // namespace
 
-/// Largest squares of node vectors by the node's mass: entry k holds nodes of 2^(exponent - k) to twice that.
-struct SpeedsByMass {
-  static constexpr int kClasses = 8;
-  int exponent = std::numeric_limits<int>::min();
-  std::array<double, kClasses> squares = {};
-
-  /// The largest speed of nodes that are not lighter than 2^-kClasses of `heaviest`.
-  double largest(int heaviest) const {
-    double square = 0;
-    for (int k = 0; k < kClasses; ++k) {
-      if (heaviest - exponent + k < kClasses) square = std::max(square, squares[static_cast<std::size_t>(k)]);
-    }
-    return std::sqrt(square);
-  }
-};
-
-/// @param vectors of the block's nodes: velocities or their changes
-template <class Real, int dim>
-SpeedsByMass speeds_by_mass(const Real* nodes, const Real* vectors) {
-  Real heaviest = 0;
-  for (int n = 0; n < kBlockNodes<dim>; ++n) heaviest = std::max(heaviest, nodes[n * kNodeWidth + kMassSlot]);
-  SpeedsByMass speeds;
-  if (!(heaviest > std::numeric_limits<Real>::min())) return speeds;
-  speeds.exponent = std::ilogb(heaviest);
-  Real limit = std::ldexp(Real(1), speeds.exponent);
-  std::array<Real, SpeedsByMass::kClasses> least;
-  for (Real& mass : least) {
-    mass = limit;
-    limit *= Real(0.5);
-  }
-  for (int n = 0; n < kBlockNodes<dim>; ++n) {
-    double square = 0;
-    for (int i = 0; i < dim; ++i) {
-      const auto v = static_cast<double>(vectors[n * kNodeWidth + i]);
-      square += v * v;
-    }
-    std::size_t k = 0;
-    while (k < least.size() && nodes[n * kNodeWidth + kMassSlot] < least[k]) ++k;
-    if (k < least.size()) speeds.squares[k] = std::max(speeds.squares[k], square);
-  }
-  return speeds;
-}
-
-/// What the speed of particles will not exceed after G2P, as far as time step control is concerned: PIC and APIC
-/// velocities are weighted means of node velocities, FLIP adds a weighted mean of their changes to what the particle
-/// has. Nodes lighter than 1/256 of the heaviest are left out: w_ip <= m_i / m_p, so they are a few per cent of any
-/// particle's velocity, and where gradients do not vanish with the mass they may be fast without meaning.
-template <class Real, int dim>
-double bound_on_speed(const World<Real, dim>& world, double grid_speed, double grid_change) {
-  const double flip = world.transfer.flip;
-  if (flip == 0) return grid_speed;
-  double particle_speed = 0;
-  for (const auto& material : world.materials) particle_speed = std::max(particle_speed, material.max_speed);
-  return (1 - flip) * grid_speed + flip * (particle_speed + grid_change);
-}
-
 template <class Real, int dim>
 void update_velocity(World<Real, dim>& world, double dt) {
   const VerbTimer timer(world.verb_times, Verb::update_velocity);
   Grid<Real, dim>& grid = world.grid;
-  const BlockColliders<dim> block_colliders(world.colliders, world.t + dt, grid.dx());
+  const BlockColliders<dim> block_colliders(world.colliders, world.t + dt, grid.dx(), 2 * dt);
   Vec<Real, dim> gravity_impulse;
   for (int i = 0; i < dim; ++i) gravity_impulse[i] = static_cast<Real>(dt * world.gravity[i]);
   const auto blocks = grid.node_blocks();

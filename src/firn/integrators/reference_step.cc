@@ -62,7 +62,7 @@ void update_velocity(World<Real, dim>& world, const std::vector<PosedCollider<di
     node.velocity_change = node.velocity - (1 / node.mass) * node.momentum_before;
     for (const auto& collider : colliders) {
       if (!(collider.distance(x) < 0)) continue;
-      world.max_collider_speed = std::max(world.max_collider_speed, norm(collider.velocity(x)));
+      world.max_collider_speed = std::max(world.max_collider_speed, collider.fastest(x));
     }
   }
 }
@@ -112,7 +112,8 @@ template <template <class> class Model, class Real, int dim>
 void update_stress(World<Real, dim>& world, std::size_t m, double dt, StepReport& report) {
   auto& material = world.materials[m];
   auto& particles = material.particles;
-  const Model<double> model(material.parameters);
+  ParametersOfOne parameters(material.parameters);
+  const int own_columns = particles.history_count() - static_cast<int>(material.parameters.varied.size());
   const Field gradient = particles.has(Field::grad_v) ? Field::grad_v : Field::affine;
   double wave_modulus = 0, viscosity = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
@@ -121,13 +122,14 @@ void update_stress(World<Real, dim>& world, std::size_t m, double dt, StepReport
       F.e[e] = static_cast<double>(particles.real(Field::strain, e)[p]);
       grad_v.e[e] = static_cast<double>(particles.real(gradient, e)[p]);
     }
-    double history[kMaxHistoryColumns] = {};
+    double history[kMaxHistoryColumns + kMaxVariedParameters] = {};
     for (int h = 0; h < particles.history_count(); ++h) history[h] = static_cast<double>(particles.history(h)[p]);
+    const Model<double> model(parameters.with(history + own_columns));
 
     const auto response = model.update(F, history, grad_v, dt);
 
     for (int e = 0; e < dim * dim; ++e) particles.real(Field::strain, e)[p] = static_cast<Real>(F.e[e]);
-    for (int h = 0; h < particles.history_count(); ++h) particles.history(h)[p] = static_cast<Real>(history[h]);
+    for (int h = 0; h < own_columns; ++h) particles.history(h)[p] = static_cast<Real>(history[h]);
     const auto store = [&](int c, double tau) { particles.real(Field::stress, c)[p] = static_cast<Real>(tau); };
     for (int i = 0; i < dim; ++i) store(i, response.tau(i, i));
     if constexpr (dim == 3) {
@@ -169,7 +171,7 @@ StepReport reference_step(World<Real, dim>& world, double dt) {
   const double dx = world.grid.dx();
   const Period<dim>& period = world.grid.period();
   std::vector<PosedCollider<dim>> colliders;
-  for (const auto& collider : world.colliders) colliders.emplace_back(collider, world.t + dt);
+  for (const auto& collider : world.colliders) colliders.emplace_back(collider, world.t + dt, 2 * dt);
 
   if (world.body_force) evaluate_body_force<Real, dim>(world);
   ReferenceGrid<dim> grid;

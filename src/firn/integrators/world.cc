@@ -14,6 +14,11 @@ MaterialSet<Real, dim>& World<Real, dim>::add_material(std::string name, int mod
   for (const HistoryColumn& h : history_columns(all_models()[static_cast<std::size_t>(model)], dim)) {
     options.history.push_back({std::string(h.name), std::string(h.unit), std::string(h.help), h.initial_value});
   }
+  for (const int k : parameters.varied) {
+    const Parameter& p = all_models()[static_cast<std::size_t>(model)].parameters[static_cast<std::size_t>(k)];
+    options.history.push_back({std::string(p.name), std::string(p.unit), std::string(p.help),
+                               parameters.values[static_cast<std::size_t>(k)]});
+  }
   materials.push_back({std::move(name), model, parameters, Particles<Real, dim>(options)});
   return materials.back();
 }

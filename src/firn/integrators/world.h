@@ -99,7 +99,8 @@ struct World {
   bool drained = true;
   VerbTimes verb_times = {};
 
-  /// Adds a material without particles. @param model place in all_models()
+  /// Adds a material without particles. Parameters that vary become columns behind the model's history, named as they
+  /// are. @param model place in all_models()
   MaterialSet<Real, dim>& add_material(std::string name, int model, const ModelParameters& parameters);
   std::size_t particle_count() const;
 };

@@ -2,6 +2,7 @@
 
 #include <firn/geometry/polygon.h>
 #include <firn/geometry/triangle_mesh.h>
+#include <firn/io/painted_mesh.h>
 
 #include <array>
 #include <string>
@@ -21,6 +22,8 @@ struct ObjFile {
 
 ObjFile parse_obj(std::string_view bytes, const std::string& name);
 TriangleMesh parse_ply(std::string_view bytes, const std::string& name);
+/// With the scalar property `attribute` of its vertices.
+PaintedMesh parse_painted_ply(std::string_view bytes, const std::string& name, const std::string& attribute);
 TriangleMesh parse_stl(std::string_view bytes, const std::string& name);
 
 /// The closed chains of the line elements or, without any, of the border of the faces.

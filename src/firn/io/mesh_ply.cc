@@ -202,14 +202,18 @@ class BinaryValues final : public Values {
 };
 
 class PlyBody {
+  static constexpr std::size_t kNotAnAxis = std::string_view::npos;
+
  public:
-  PlyBody(const Header& header, Values& values) : header_(header), values_(values) {
+  /// @param attribute property of the vertices to keep besides x, y, z; may be empty
+  PlyBody(const Header& header, Values& values, std::string_view attribute)
+      : header_(header), values_(values), attribute_(attribute) {
     for (const Element& element : header.elements) {
       if (element.name == "vertex") vertex_count_ = element.count;
     }
   }
 
-  TriangleMesh read() {
+  PaintedMesh read() {
     for (const Element& element : header_.elements) {
       if (element.name == "vertex" && element.count > std::size_t(std::numeric_limits<std::int32_t>::max())) {
         values_.fail(fmt::format("{} vertices; the most possible is 2147483647", element.count));
@@ -218,7 +222,7 @@ class PlyBody {
       if (element.properties.empty()) continue;
       for (std::size_t i = 0; i < element.count; ++i) read_one(element, i);
     }
-    return std::move(mesh_);
+    return {std::move(mesh_), std::move(painted_)};
   }
 
  private:
@@ -231,10 +235,12 @@ class PlyBody {
       }
       const bool is_vertex = element.name == "vertex";
       const double value = values_.next(property.scalar, property.name);
-      const std::size_t axis = std::string_view("xyz").find(property.name);
-      if (!is_vertex || property.name.size() != 1 || axis == std::string_view::npos) continue;
+      const std::size_t axis = property.name.size() == 1 ? std::string_view("xyz").find(property.name) : kNotAnAxis;
+      const bool is_attribute = is_vertex && !attribute_.empty() && property.name == attribute_;
+      if (!is_attribute && (!is_vertex || axis == kNotAnAxis)) continue;
       if (!std::isfinite(value)) values_.fail(fmt::format("{} of vertex {} is not finite", property.name, index));
-      x[static_cast<int>(axis)] = value;
+      if (axis != kNotAnAxis) x[static_cast<int>(axis)] = value;
+      if (is_attribute) painted_.push_back(value);
     }
     if (element.name == "vertex") mesh_.vertices.push_back(x);
   }
@@ -266,6 +272,8 @@ class PlyBody {
   Values& values_;
   std::size_t vertex_count_ = 0;
   TriangleMesh mesh_;
+  std::string_view attribute_;
+  std::vector<double> painted_;
   std::vector<std::int32_t> corners_;
 };
 
@@ -289,6 +297,20 @@ void check_header(const Header& header, const std::string& name) {
   }
 }
 
+void check_attribute(const Header& header, const std::string& name, const std::string& attribute) {
+  std::string known;
+  for (const Element& element : header.elements) {
+    if (element.name != "vertex") continue;
+    for (const Property& property : element.properties) {
+      if (property.count) continue;
+      if (property.name == attribute) return;
+      known += (known.empty() ? "" : ", ") + property.name;
+    }
+  }
+  throw Error(ErrorKind::usage,
+              fmt::format("{}: the vertices have no property \"{}\"; they have {}", name, attribute, known));
+}
+
 /// The part of the file that is text: the header, and the body of an ascii file.
 std::string_view text_part(std::string_view bytes) {
   const std::size_t end = bytes.find("end_header");
@@ -302,21 +324,26 @@ std::string_view text_part(std::string_view bytes) {
 }  // namespace
 
 TriangleMesh parse_ply(std::string_view bytes, const std::string& name) {
+  return parse_painted_ply(bytes, name, "").mesh;
+}
+
+PaintedMesh parse_painted_ply(std::string_view bytes, const std::string& name, const std::string& attribute) {
   TextScanner scanner(text_part(bytes), name, TextScanner::Continuation::none);
   const Header header = read_header(scanner);
   check_header(header, name);
-  TriangleMesh mesh;
+  if (!attribute.empty()) check_attribute(header, name, attribute);
+  PaintedMesh painted;
   if (header.format == Format::ascii) {
     scanner.next_line();
     TextValues values(scanner, bytes.size());
-    mesh = PlyBody(header, values).read();
+    painted = PlyBody(header, values, attribute).read();
   } else {
     BinaryValues values(bytes, scanner.offset_after_line(), name, header.format == Format::big_endian);
-    mesh = PlyBody(header, values).read();
+    painted = PlyBody(header, values, attribute).read();
   }
-  if (mesh.vertices.empty()) throw Error(ErrorKind::usage, name + ": the file has no vertices");
-  if (mesh.triangles.empty()) throw Error(ErrorKind::usage, name + ": the file has no faces");
-  return mesh;
+  if (painted.mesh.vertices.empty()) throw Error(ErrorKind::usage, name + ": the file has no vertices");
+  if (painted.mesh.triangles.empty()) throw Error(ErrorKind::usage, name + ": the file has no faces");
+  return painted;
 }
 
 }  // namespace firn

@@ -78,6 +78,16 @@ TriangleMesh read_mesh(const fs::path& path) {
   return kind == ".ply" ? parse_ply(bytes, name) : parse_stl(bytes, name);
 }
 
+PaintedMesh read_painted_mesh(const fs::path& path, const std::string& attribute) {
+  const std::string name = path.string(), kind = extension(path);
+  if (kind != ".ply") {
+    throw Error(ErrorKind::usage, fmt::format("{}: the attribute \"{}\" can only be read from a .ply mesh, which has "
+                                              "properties of vertices",
+                                              name, attribute));
+  }
+  return parse_painted_ply(read_bytes(path), name, attribute);
+}
+
 Polygon read_polygon(const fs::path& path) {
   const std::string name = path.string(), kind = extension(path);
   if (kind != ".obj") {

@@ -23,6 +23,7 @@ struct StatsRow {
   double angular_momentum[3] = {};
   double kinetic_energy = 0, elastic_energy = 0, gravitational_energy = 0;
   double max_speed = 0;
+  double volume = 0, volume_drift = 0;
   double min_J = 0, max_J = 0;
   double wall_seconds = 0;
   std::vector<double> further = {};  ///< one value per further column of the table

@@ -11,10 +11,12 @@
 //     template <int dim> T energy(const Mat<T, dim>& F, const T* history) const;       J/m^3, undeformed
 //     template <int dim> Response<T, dim> update(Mat<T, dim>& F, T* history, const Mat<T, dim>& grad_v, T dt) const;
 //     T volume_ratio(T J, const T* history) const;               J is the determinant of the strain matrix
+//     static std::string refusal(const ModelParameters&);        see ModelInfo; may be left out
 //   };
 //
-// F is the strain matrix, of which only the entries of kStrain mean anything. Two dimensions mean plane strain: F_zz
-// = 1.
+// All members are T or structs of T: where parameters vary, the lanes of a model are made of the models of single
+// particles. F is the strain matrix, of which only the entries of kStrain mean anything. Two dimensions mean plane
+// strain: F_zz = 1.
 
 #if defined(FIRN_MATERIALS_MODEL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FIRN_MATERIALS_MODEL_INL_H_

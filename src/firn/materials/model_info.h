@@ -2,9 +2,11 @@
 
 #include <firn/core/parameter.h>
 #include <firn/materials/history_column.h>
+#include <firn/materials/model_parameters.h>
 #include <firn/materials/strain_kind.h>
 
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace firn {
@@ -20,6 +22,9 @@ struct ModelInfo {
   StrainKind strain;  ///< strain_entries(strain, dim): the strain columns and their initial values
   double minimum_J;   ///< a particle at or below it has failed; minus infinity if the model bears inversion
   bool viscous;       ///< fills StressReport::kinematic_viscosity
+  /// Why the model cannot be used with such parameters, of which each is in its range, and what to do; "" if it can.
+  /// Null if it always can.
+  std::string (*refusal)(const ModelParameters&);
 };
 
 /// The history columns of a model in dim dimensions: in three without the ones that plane strain needs.

@@ -2,6 +2,7 @@
 
 #include <firn/core/parameter.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace firn {
@@ -10,6 +11,32 @@ namespace firn {
 struct ModelParameters {
   std::vector<double> values;
   double density = 1000;  ///< kg/m^3, of the undeformed material
+  /// Edge of a grid cell, m: as wide as the bands that softening gathers in.
+  double cell_size = 0.01;
+  /// Places in `values` of the parameters that each particle has of its own, in columns behind the model's history in
+  /// this order; `values` holds something allowed there, without meaning.
+  std::vector<int> varied = {};
+};
+
+/// Upper bound over all models, checked where the models are listed.
+inline constexpr int kMaxVariedParameters = 8;
+
+/// The parameters of one particle after another.
+class ParametersOfOne {
+ public:
+  explicit ParametersOfOne(const ModelParameters& shared) : own_(shared) {}
+
+  /// Those of a particle with these values of the parameters that vary. Good until the next call.
+  template <class Real>
+  const ModelParameters& with(const Real* varied) {
+    for (std::size_t k = 0; k < own_.varied.size(); ++k) {
+      own_.values[static_cast<std::size_t>(own_.varied[k])] = static_cast<double>(varied[k]);
+    }
+    return own_;
+  }
+
+ private:
+  ModelParameters own_;
 };
 
 // Parameters that several models share.

@@ -17,6 +17,7 @@
 #include <firn/materials/neo_hookean-inl.h>
 #include <firn/materials/newtonian_fluid-inl.h>
 #include <firn/materials/oldroyd_b-inl.h>
+#include <firn/materials/rankine_damage-inl.h>
 #include <firn/materials/snow-inl.h>
 #include <firn/materials/von_mises-inl.h>
 
@@ -30,7 +31,7 @@ struct ModelList {
 };
 
 using AllModels = ModelList<FixedCorotated, NeoHookean, Hencky, LinearCorotated, Snow, DruckerPrager, VonMises, CamClay,
-                            HerschelBulkley, OldroydB, NewtonianFluid>;
+                            HerschelBulkley, OldroydB, NewtonianFluid, RankineDamage>;
 
 }  // namespace HWY_NAMESPACE
 }  // namespace firn

@@ -151,9 +151,8 @@ constexpr Preset::Value kCopper[] = {
 constexpr Preset::Value kConcrete[] = {
     {"youngs_modulus", 3.1e10, "EN 1992-1-1, table 3.1: C25/30"},
     {"poisson_ratio", 0.2, "EN 1992-1-1, section 3.1.3"},
-    {"friction_angle", 60, "chosen: with the cohesion, 25 MPa in compression, EN 1992-1-1, table 3.1: C25/30"},
-    {"cohesion", 3.35e6, "chosen: with the angle, 2.6 MPa in tension, EN 1992-1-1, table 3.1: C25/30"},
-    {"dilation_limit", 0.5, kForgets},
+    {"cracking_stress", 2.6e6, "EN 1992-1-1, table 3.1: C25/30, mean tensile strength"},
+    {"fracture_energy", 100, "chosen: a crack of 77 micrometres still bears a little tension"},
 };
 
 constexpr Preset kPresets[] = {
@@ -180,7 +179,7 @@ constexpr Preset kPresets[] = {
     {"plasticine", "von_mises", "Modelling clay that keeps every dent.", 1800, "chosen: sinks in water", kPlasticine},
     {"steel", "von_mises", "Structural steel S 235.", 7850, "EN 1991-1-1, table A.4", kSteel},
     {"copper", "von_mises", "Cold-worked copper.", 8930, kTaylorBar, kCopper},
-    {"concrete", "drucker_prager", "Concrete C25/30, without loss of strength once broken.", 2400,
+    {"concrete", "rankine_damage", "Concrete C25/30 that cracks in tension; it is not crushed.", 2400,
      "EN 1991-1-1, table A.1", kConcrete},
     {"foam", "herschel_bulkley", "Shaving foam.", 80, "chosen: mostly air", kFoam},
     {"lava", "herschel_bulkley", "Basalt lava at a fixed temperature, as it creeps.", 2600, "chosen: molten basalt",

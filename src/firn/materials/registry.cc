@@ -32,9 +32,17 @@ constexpr bool plane_strain_columns_last() {
   return true;
 }
 
+template <class Model>
+constexpr auto refusal_of() {
+  std::string (*function)(const ModelParameters&) = nullptr;
+  if constexpr (requires { &Model::refusal; }) function = &Model::refusal;
+  return function;
+}
+
 template <template <class> class... Models>
 constexpr auto infos_of(ModelList<Models...>) {
   static_assert(((Models<double>::kHistory.size() <= kMaxHistoryColumns) && ...));
+  static_assert(((Models<double>::kParameters.size() <= kMaxVariedParameters) && ...));
   static_assert((plane_strain_columns_last<Models<double>>() && ...));
   return std::array{ModelInfo{
       .name = Models<double>::kName,
@@ -46,6 +54,7 @@ constexpr auto infos_of(ModelList<Models...>) {
       .strain = strain_kind<Models<double>>(),
       .minimum_J = Models<double>::kMinimumJ,
       .viscous = is_viscous<Models<double>>(),
+      .refusal = refusal_of<Models<double>>(),
   }...};
 }
 

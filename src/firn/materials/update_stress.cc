@@ -6,6 +6,7 @@
 #include <firn/materials/update_stress.h>
 
 #include <array>
+#include <bit>
 
 HWY_BEFORE_NAMESPACE();
 namespace firn {
@@ -46,11 +47,35 @@ std::size_t first_of(LaneMask<Real> mask) {
   return lane;
 }
 
+/// A model of which lane i is that of particle i of [begin, begin + count), the rest as the last one. Built from models
+/// of single numbers, so that constants may be computed with functions that vectors lack, and with the same bits.
 template <template <class> class Model, class Real, int dim>
-StressReport update_particles(const ModelParameters& parameters, const MaterialColumns<Real, dim>& columns,
-                              std::size_t begin, std::size_t end, Real dt) {
+HWY_NOINLINE Model<Lanes<Real>> model_in_lanes(ParametersOfOne& parameters, std::size_t varied,
+                                               const MaterialColumns<Real, dim>& columns, std::size_t begin,
+                                               std::size_t count) {
   using L = Lanes<Real>;
-  const Model<L> model(parameters);
+  constexpr std::size_t kMembers = sizeof(Model<Real>) / sizeof(Real);
+  static_assert(sizeof(Model<L>) == kMembers * sizeof(L), "a model's members are all of its number type");
+  using Members = std::array<Real, kMembers>;
+  std::array<std::array<Real, L::kCount>, kMembers> lanes;
+  for (std::size_t lane = 0; lane < L::kCount; ++lane) {
+    const std::size_t p = begin + (lane < count ? lane : count - 1);
+    Real own[kMaxVariedParameters];
+    for (std::size_t k = 0; k < varied; ++k) own[k] = columns.history[history_count<Model<L>, dim>() + k][p];
+    const auto members = std::bit_cast<Members>(Model<Real>(parameters.with(own)));
+    for (std::size_t m = 0; m < kMembers; ++m) lanes[m][lane] = members[m];
+  }
+  return std::bit_cast<Model<L>>(lanes);
+}
+
+/// Particles [begin, end) with `own`, which may differ between lanes, or without it with the model of the parameters.
+/// Compiled once for both: the model is in registers before the loop begins, wherever it comes from.
+template <template <class> class Model, class Real, int dim>
+HWY_NOINLINE StressReport update_range(const ModelParameters& parameters, const Model<Lanes<Real>>* own,
+                                       const MaterialColumns<Real, dim>& columns, std::size_t begin, std::size_t end,
+                                       Real dt) {
+  using L = Lanes<Real>;
+  const Model<L> model = own == nullptr ? Model<L>(parameters) : *own;
   constexpr int kHistoryCount = history_count<Model<L>, dim>();
   constexpr std::span<const StrainEntry> kEntries = strain_entries(strain_kind<Model<L>>(), dim);
   constexpr Real kLargest = std::numeric_limits<Real>::max();
@@ -92,6 +117,32 @@ StressReport update_particles(const ModelParameters& parameters, const MaterialC
   report.wave_speed = std::sqrt(largest_of(wave_modulus) / parameters.density);
   report.kinematic_viscosity = largest_of(viscosity) / parameters.density;
   return report;
+}
+
+/// Vector by vector, each with a model of its own.
+template <template <class> class Model, class Real, int dim>
+HWY_NOINLINE StressReport update_varied(const ModelParameters& parameters, const MaterialColumns<Real, dim>& columns,
+                                        std::size_t begin, std::size_t end, Real dt) {
+  using L = Lanes<Real>;
+  ParametersOfOne own(parameters);
+  StressReport report;
+  for (std::size_t p = begin; p < end; p += L::kCount) {
+    const std::size_t count = end - p < L::kCount ? end - p : L::kCount;
+    const Model<L> model = model_in_lanes<Model, Real, dim>(own, parameters.varied.size(), columns, p, count);
+    const StressReport part = update_range<Model, Real, dim>(parameters, &model, columns, p, p + count, dt);
+    if (report.failed == StressReport::kNone) report.failed = part.failed;
+    report.wave_speed = part.wave_speed > report.wave_speed ? part.wave_speed : report.wave_speed;
+    report.kinematic_viscosity =
+        part.kinematic_viscosity > report.kinematic_viscosity ? part.kinematic_viscosity : report.kinematic_viscosity;
+  }
+  return report;
+}
+
+template <template <class> class Model, class Real, int dim>
+StressReport update_particles(const ModelParameters& parameters, const MaterialColumns<Real, dim>& columns,
+                              std::size_t begin, std::size_t end, Real dt) {
+  if (!parameters.varied.empty()) return update_varied<Model, Real, dim>(parameters, columns, begin, end, dt);
+  return update_range<Model, Real, dim>(parameters, nullptr, columns, begin, end, dt);
 }
 
 template <class Real, int dim, template <class> class... Models>

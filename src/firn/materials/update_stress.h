@@ -16,9 +16,10 @@ inline constexpr int kStressComponents = dim == 3 ? 6 : 4;
 /// whole SIMD vector may be read from the last element on.
 template <class Real, int dim>
 struct MaterialColumns {
-  const Real* grad_v[dim * dim];         ///< 1/s, row-major: row is the velocity's component
-  Real* strain[dim * dim];               ///< row-major; null where strain_entries() of the model has no entry
-  Real* history[kMaxHistoryColumns];     ///< as history_columns() of the model
+  const Real* grad_v[dim * dim];  ///< 1/s, row-major: row is the velocity's component
+  Real* strain[dim * dim];        ///< row-major; null where strain_entries() of the model has no entry
+  /// As history_columns() of the model, then one for each parameter that varies.
+  Real* history[kMaxHistoryColumns + kMaxVariedParameters];
   Real* stress[kStressComponents<dim>];  ///< Kirchhoff, Pa
 };
 
@@ -43,6 +44,7 @@ UpdateStress<Real, dim> update_stress_function(int model);
 
 /// Energy density psi, J/m^3 of undeformed volume, of model number `model`. F is the strain matrix, row-major; entries
 /// that the model does not store may be anything. The history has kMaxHistoryColumns values, zero where none is stored.
+/// Parameters that vary are those of the particle, see ParametersOfOne.
 template <int dim>
 double energy_density(int model, const ModelParameters&, const double* F, const double* history);
 

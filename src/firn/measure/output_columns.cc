@@ -32,6 +32,15 @@ std::vector<HistoryColumn> all_history() {
   return all;
 }
 
+/// What all particles of the model have in common; 0 if it has no such parameter.
+double shared_value(std::string_view name, int model, const ModelParameters& parameters) {
+  const auto list = all_models()[static_cast<std::size_t>(model)].parameters;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (list[i].name == name) return parameters.values[i];
+  }
+  return 0;
+}
+
 template <class Real, int dim>
 std::vector<std::uint32_t> id_order(const Particles<Real, dim>& particles) {
   std::vector<std::uint32_t> order(particles.size());
@@ -73,7 +82,7 @@ void append_to_snapshot(Snapshot& snapshot, const Particles<Real, dim>& particle
   append(std::int32_t(), "material", "", "Index of the particle's material.", 1,
          [&](auto& values, std::uint32_t) { values.push_back(material); });
   const auto volume_ratio_at = [&](std::uint32_t p) {
-    return volume_ratio(particle_state(particles, p), model, parameters);
+    return volume_ratio(particle_state(particles, p, parameters), model, parameters);
   };
   append(Real(), "J", "", "Current volume over undeformed volume.", 1,
          [&](auto& values, std::uint32_t p) { values.push_back(static_cast<Real>(volume_ratio_at(p))); });
@@ -85,13 +94,24 @@ void append_to_snapshot(Snapshot& snapshot, const Particles<Real, dim>& particle
          [&](auto& values, std::uint32_t p) {
            values.push_back(static_cast<Real>(pressure(kirchhoff_stress(particles, p)) / volume_ratio_at(p)));
          });
-  for (const HistoryColumn& h : all_history()) {
+  const auto own_column = [&](std::string_view name) {
     int own = -1;
-    for (int k = 0; k < particles.history_count(); ++k) own = particles.history_spec(k).name == h.name ? k : own;
+    for (int k = 0; k < particles.history_count(); ++k) own = particles.history_spec(k).name == name ? k : own;
+    return own;
+  };
+  for (const HistoryColumn& h : all_history()) {
+    const int own = own_column(h.name);
     append(Real(), std::string(h.name).c_str(), std::string(h.unit).c_str(), std::string(h.help).c_str(), 1,
            [&](auto& values, std::uint32_t p) {
              values.push_back(own < 0 ? static_cast<Real>(h.initial_value) : particles.history(own)[p]);
            });
+  }
+  for (const Parameter& parameter : label.varied) {
+    const int own = own_column(parameter.name);
+    const Real shared = static_cast<Real>(shared_value(parameter.name, model, parameters));
+    append(Real(), std::string(parameter.name).c_str(), std::string(parameter.unit).c_str(),
+           std::string(parameter.help).c_str(), 1,
+           [&](auto& values, std::uint32_t p) { values.push_back(own < 0 ? shared : particles.history(own)[p]); });
   }
 }
 

@@ -12,13 +12,17 @@ template <int dim>
 struct ParticleState {
   Mat<double, dim> F;
   double history[kMaxHistoryColumns];
+  double varied[kMaxVariedParameters];  ///< its own values of ModelParameters::varied
 };
 
 template <class Real, int dim>
-ParticleState<dim> particle_state(const Particles<Real, dim>& particles, std::size_t p) {
+ParticleState<dim> particle_state(const Particles<Real, dim>& particles, std::size_t p,
+                                  const ModelParameters& parameters) {
   ParticleState<dim> state = {};
   for (int e = 0; e < dim * dim; ++e) state.F.e[e] = particles.real(Field::strain, e)[p];
-  for (int h = 0; h < particles.history_count(); ++h) state.history[h] = particles.history(h)[p];
+  const int varied = static_cast<int>(parameters.varied.size()), own = particles.history_count() - varied;
+  for (int h = 0; h < own; ++h) state.history[h] = particles.history(h)[p];
+  for (int k = 0; k < varied; ++k) state.varied[k] = particles.history(own + k)[p];
   return state;
 }
 

@@ -96,12 +96,14 @@ void add_to_probes(std::span<const Vec<double, dim>> points, const Particles<Rea
   const Neighbourhood<Real, dim> neighbourhood(particles, dx, kernel, period);
   parallel_each(points.size(), [&](std::size_t i) {
     ProbeSums& sum = sums[i];
+    ParametersOfOne own(parameters);
     neighbourhood.for_each(points[i], [&](std::size_t p, double weight) {
       const double mass = weight * particles.real(Field::mass)[p];
       sum.mass += mass;
       for (int d = 0; d < dim; ++d) sum.momentum[d] += mass * particles.real(Field::velocity, d)[p];
       const double rest_volume = weight * particles.real(Field::rest_volume)[p];
-      sum.volume += rest_volume * volume_ratio(particle_state(particles, p), model, parameters);
+      const ParticleState<dim> state = particle_state(particles, p, parameters);
+      sum.volume += rest_volume * volume_ratio(state, model, own.with(state.varied));
       // V p = V_0 J (tau / J).
       sum.work += rest_volume * pressure(kirchhoff_stress(particles, p));
     });

@@ -32,8 +32,8 @@ Vec3d affine_spin(const Particles<Real, dim>& particles, std::size_t p, const Me
 }
 
 template <class Real, int dim>
-Totals totals_of(const Particles<Real, dim>& particles, std::size_t p, int model, const ModelParameters& parameters,
-                 const MeasureContext<dim>& context) {
+Totals totals_of(const Particles<Real, dim>& particles, std::size_t p, int model, const ModelParameters& shared,
+                 ParametersOfOne& own, const MeasureContext<dim>& context) {
   const double mass = particles.real(Field::mass)[p];
   const Vec<double, dim> at = particles.position(p, context.dx, context.kernel);
   Vec3d x = {}, v = {};
@@ -43,17 +43,19 @@ Totals totals_of(const Particles<Real, dim>& particles, std::size_t p, int model
     v[i] = particles.real(Field::velocity, i)[p];
     height_work -= context.gravity[i] * at[i];
   }
-  const ParticleState<dim> state = particle_state(particles, p);
+  const ParticleState<dim> state = particle_state(particles, p, shared);
+  const ModelParameters& parameters = own.with(state.varied);
   Totals totals;
   totals.mass = mass;
   totals.momentum = mass * v;
   totals.angular_momentum = mass * (cross(x, v) + affine_spin(particles, p, context));
   totals.kinetic_energy = 0.5 * mass * dot(v, v);
-  totals.elastic_energy = static_cast<double>(particles.real(Field::rest_volume)[p]) *
-                          energy_density<dim>(model, parameters, state.F.e, state.history);
+  totals.rest_volume = particles.real(Field::rest_volume)[p];
+  totals.elastic_energy = totals.rest_volume * energy_density<dim>(model, parameters, state.F.e, state.history);
   totals.gravitational_energy = mass * height_work;
   totals.max_speed = norm(v);
   totals.min_J = totals.max_J = volume_ratio(state, model, parameters);
+  totals.volume = totals.rest_volume * totals.min_J;
   return totals;
 }
 
@@ -67,6 +69,8 @@ Totals& Totals::operator+=(const Totals& other) {
   elastic_energy += other.elastic_energy;
   gravitational_energy += other.gravitational_energy;
   max_speed = std::max(max_speed, other.max_speed);
+  volume += other.volume;
+  rest_volume += other.rest_volume;
   min_J = std::min(min_J, other.min_J);
   max_J = std::max(max_J, other.max_J);
   return *this;
@@ -78,7 +82,8 @@ Totals measure_totals(const Particles<Real, dim>& particles, int model, const Mo
   std::vector<Totals> parts((particles.size() + kGrain - 1) / kGrain);
   parallel_chunks(particles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     Totals& part = parts[begin / kGrain];
-    for (std::size_t p = begin; p < end; ++p) part += totals_of(particles, p, model, parameters, context);
+    ParametersOfOne own(parameters);
+    for (std::size_t p = begin; p < end; ++p) part += totals_of(particles, p, model, parameters, own, context);
   });
   Totals totals;
   for (const Totals& part : parts) totals += part;

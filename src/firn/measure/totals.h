@@ -17,8 +17,13 @@ struct Totals {
   double elastic_energy = 0;                               ///< J
   double gravitational_energy = 0;                         ///< zero at the origin's height, J
   double max_speed = 0;                                    ///< m/s
+  double volume = 0;                                       ///< m^3
+  double rest_volume = 0;                                  ///< of the undeformed material, m^3
   double min_J = std::numeric_limits<double>::infinity();  ///< current over undeformed volume
   double max_J = -std::numeric_limits<double>::infinity();
+
+  /// Relative change of volume since the material was undeformed; 0 without particles.
+  double volume_drift() const { return rest_volume > 0 ? volume / rest_volume - 1 : 0; }
 
   Totals& operator+=(const Totals& other);
 };

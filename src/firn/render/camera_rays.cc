@@ -15,7 +15,7 @@ Vec3f single(const Vec3d& x) {
 }
 
 /// Box around all particles but the outermost hundredth along each axis, and around the view's boxes and balls.
-struct Bounds {
+struct SeenBox {
   Vec3d low = constant_vector<double, 3>(1e300), high = constant_vector<double, 3>(-1e300);
   void add(const Vec3d& x, double radius) {
     for (int a = 0; a < 3; ++a) {
@@ -25,7 +25,7 @@ struct Bounds {
   }
 };
 
-void add_particles(const Snapshot& snapshot, Bounds* bounds) {
+void add_particles(const Snapshot& snapshot, SeenBox* bounds) {
   const std::size_t count = snapshot.size();
   if (count == 0) return;
   std::vector<double> values(count);
@@ -75,10 +75,13 @@ Ray CameraRays::at(float x, float y) const {
 Vec3f CameraRays::local(const Vec3d& world) const { return single(world - target_); }
 
 Camera automatic_camera(const Snapshot& snapshot, const View& view) {
-  Bounds bounds;
+  SeenBox bounds;
   add_particles(snapshot, &bounds);
   for (const DrawnBox& box : view.boxes) bounds.add(box.center, norm(box.half_size));
   for (const DrawnSphere& sphere : view.spheres) bounds.add(sphere.center, sphere.radius);
+  for (const DrawnSolid& solid : view.solids) {
+    for (const Vec3d& x : solid.surface->mesh.vertices) bounds.add(solid.at(x), 0);
+  }
   if (bounds.low[0] > bounds.high[0]) bounds.add({}, 1);
   Camera camera;
   camera.up = snapshot.dimension == 2 ? Vec3d{{0, 1, 0}} : normalized(view.up);

@@ -58,6 +58,11 @@ Vec3f background(const View& view, const FlatCamera& camera, double px, double p
     const double distance = std::hypot(x[0] - sphere.center[0], x[1] - sphere.center[1]) - sphere.radius;
     cover(distance * scale, color_or(sphere.color, kColliderColor), &color);
   }
+  for (const DrawnSolid& solid : view.solids) {
+    const Vec3d local = (1 / solid.scale) * (transpose(solid.rotation) * (x - solid.origin));
+    const double distance = solid.scale * solid.section->distance({{local[0], local[1]}});
+    cover(distance * scale, color_or(solid.color, kColliderColor), &color);
+  }
   return color;
 }
 

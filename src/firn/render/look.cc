@@ -103,6 +103,7 @@ constexpr Look kLooks[] = {
     solid("von_mises", {{0.34F, 0.35F, 0.36F}}, 0.6F),
     grains("drucker_prager", {{0.46F, 0.34F, 0.22F}}, 0.60F, 0.18F),
     grains("cam_clay", {{0.24F, 0.15F, 0.09F}}, 0.80F, 0.10F),
+    grains("rankine_damage", {{0.40F, 0.40F, 0.39F}}, 0.80F, 0.08F),
 };
 
 constexpr Look kNeutral = {.name = "", .color = {{0.6F, 0.6F, 0.58F}}, .wrap = 0.15F, .smooth = 0.5F, .jitter = 0.06F};

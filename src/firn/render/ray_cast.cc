@@ -111,6 +111,13 @@ bool is_drawn(const DrawnHalfSpace& plane, const Camera& camera) {
 
 Vec3f color_or(const Vec3f& color, const Vec3f& other) { return color[0] < 0 ? other : color; }
 
+Vec3f turned(const Mat3d& rotation, const Vec3f& n) {
+  Vec3d wide;
+  for (int i = 0; i < 3; ++i) wide[i] = n[i];
+  wide = rotation * wide;
+  return {{static_cast<float>(wide[0]), static_cast<float>(wide[1]), static_cast<float>(wide[2])}};
+}
+
 Caster::Caster(const Snapshot& snapshot, const View& view, const Camera& camera, const ParticleLooks& looks)
     : view_(view),
       looks_(looks),
@@ -180,6 +187,15 @@ RayGeometry Caster::geometry(const View& view, const Camera& camera) const {
   for (const DrawnSphere& sphere : view.spheres) {
     geometry.spheres.push_back(ball_at(rays_.local(sphere.center), static_cast<float>(sphere.radius)));
   }
+  for (const DrawnSolid& solid : view.solids) {
+    RayGeometry::Solid& drawn = geometry.solids.emplace_back();
+    for (const Vec3d& x : solid.surface->mesh.vertices) drawn.vertices.push_back(rays_.local(solid.at(x)));
+    for (const auto& normals : solid.surface->normals) {
+      for (const Vec3f& n : normals) drawn.normals.push_back(turned(solid.rotation, n));
+    }
+    drawn.triangles = solid.surface->mesh.triangles;
+    drawn.endless = solid.endless;
+  }
   return geometry;
 }
 
@@ -212,6 +228,7 @@ Surface Caster::surface_at(int x, const Ray& ray, const Hit& hit) const {
   if (hit.kind == HitKind::plane) s.color = plane_colors_[hit.index];
   if (hit.kind == HitKind::box) s.color = color_or(view_.boxes[hit.index].color, kColliderColor);
   if (hit.kind == HitKind::sphere) s.color = color_or(view_.spheres[hit.index].color, kColliderColor);
+  if (hit.kind == HitKind::solid) s.color = color_or(view_.solids[hit.index].color, kColliderColor);
   // Clear of the surface itself by more than the rounding of single precision at this distance.
   s.origin = place + (1e-4F * hit.distance) * hit.normal;
   return s;

@@ -10,7 +10,7 @@ namespace firn {
 
 namespace {
 
-constexpr unsigned kParticles = 0, kBoxes = 1, kSpheres = 2;  // Embree geometry ids
+constexpr unsigned kParticles = 0, kBoxes = 1, kSpheres = 2, kSolids = 3;  // Embree geometry ids, solids last
 constexpr unsigned kLanes = 8;
 
 /// Two triangles per face; corner bits as in RayGeometry::Box.
@@ -48,6 +48,20 @@ RTCIntersectContext make_context(bool coherent) {
   return context;
 }
 
+/// Rejects hits on the back of a triangle.
+void keep_front(const RTCFilterFunctionNArguments* args) {
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] != -1) continue;
+    const Vec3f normal = {{RTCHitN_Ng_x(args->hit, args->N, i), RTCHitN_Ng_y(args->hit, args->N, i),
+                           RTCHitN_Ng_z(args->hit, args->N, i)}};
+    const Vec3f direction = {{RTCRayN_dir_x(args->ray, args->N, i), RTCRayN_dir_y(args->ray, args->N, i),
+                              RTCRayN_dir_z(args->ray, args->N, i)}};
+    if (dot(normal, direction) > 0) args->valid[i] = 0;
+  }
+}
+
+void keep_none(const RTCFilterFunctionNArguments* args) { std::fill_n(args->valid, args->N, 0); }
+
 }  // namespace
 
 RayScene::RayScene(RayGeometry geometry) : geometry_(std::move(geometry)) {
@@ -61,6 +75,9 @@ RayScene::RayScene(RayGeometry geometry) : geometry_(std::move(geometry)) {
   add_balls(geometry_.particles, kParticles);
   add_boxes(kBoxes);
   add_balls(geometry_.spheres, kSpheres);
+  for (std::size_t i = 0; i < geometry_.solids.size(); ++i) {
+    add_solid(geometry_.solids[i], kSolids + static_cast<unsigned>(i));
+  }
   rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
   rtcCommitScene(scene_);
   if (const RTCError code = rtcGetDeviceError(device_); code != RTC_ERROR_NONE) {
@@ -105,6 +122,28 @@ void RayScene::add_boxes(unsigned id) {
   rtcReleaseGeometry(geometry);
 }
 
+void RayScene::add_solid(const RayGeometry::Solid& solid, unsigned id) {
+  if (solid.triangles.empty()) return;
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                               3 * sizeof(float), solid.vertices.size()));
+  auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                 3 * sizeof(unsigned), solid.triangles.size()));
+  if (vertices != nullptr && corners != nullptr) {
+    for (const Vec3f& x : solid.vertices) vertices = std::copy(x.e, x.e + 3, vertices);
+    for (const auto& triangle : solid.triangles) {
+      for (const std::int32_t corner : triangle) *corners++ = static_cast<unsigned>(corner);
+    }
+  }
+  if (solid.endless) {
+    rtcSetGeometryIntersectFilterFunction(geometry, keep_front);
+    rtcSetGeometryOccludedFilterFunction(geometry, keep_none);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene_, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
 Hit RayScene::hit_of(const Ray& ray, const RTCRayHit8& packet, unsigned lane) const {
   Hit hit;
   const unsigned id = packet.hit.geomID[lane], primitive = packet.hit.primID[lane];
@@ -113,6 +152,13 @@ Hit RayScene::hit_of(const Ray& ray, const RTCRayHit8& packet, unsigned lane) co
     hit.kind = HitKind::box;
     hit.index = primitive / 12;
     hit.normal = normalized(Vec3f{{packet.hit.Ng_x[lane], packet.hit.Ng_y[lane], packet.hit.Ng_z[lane]}});
+    if (dot(hit.normal, ray.direction) > 0) hit.normal = -hit.normal;
+  } else if (id != RTC_INVALID_GEOMETRY_ID && id >= kSolids) {
+    hit.kind = HitKind::solid;
+    hit.index = id - kSolids;
+    const float u = packet.hit.u[lane], v = packet.hit.v[lane];
+    const Vec3f* n = geometry_.solids[hit.index].normals.data() + 3 * std::size_t(primitive);
+    hit.normal = normalized((1 - u - v) * n[0] + u * n[1] + v * n[2]);
     if (dot(hit.normal, ray.direction) > 0) hit.normal = -hit.normal;
   } else if (id != RTC_INVALID_GEOMETRY_ID) {
     hit.kind = id == kParticles ? HitKind::particle : HitKind::sphere;

@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 #include <firn/core/linear_algebra.h>
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,17 +14,17 @@ struct Ray {
   Vec3f origin, direction;  ///< m, unit vector
 };
 
-enum class HitKind : std::uint8_t { none, particle, plane, box, sphere };
+enum class HitKind : std::uint8_t { none, particle, plane, box, sphere, solid };
 
 struct Hit {
   HitKind kind = HitKind::none;
-  std::uint32_t index = 0;  ///< of the particle, plane, box or sphere
+  std::uint32_t index = 0;  ///< of the particle, plane, box, sphere or solid
   float distance = 0;       ///< m
   Vec3f normal = {};        ///< outward, of unit length
 };
 
-/// What rays can meet: balls for particles, half spaces, boxes, balls. In m relative to an origin of the caller's
-/// choice near the picture, because rays are in single precision.
+/// What rays can meet: balls for particles, half spaces, boxes, balls, meshes. In m relative to an origin of the
+/// caller's choice near the picture, because rays are in single precision.
 struct RayGeometry {
   struct Ball {
     float x, y, z, radius;
@@ -34,10 +35,17 @@ struct RayGeometry {
   struct Box {
     Vec3f corners[8];  ///< corner i is at (+ or -) along axis a by bit a of i
   };
+  struct Solid {
+    std::vector<Vec3f> vertices;
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    std::vector<Vec3f> normals;  ///< three for each triangle
+    bool endless = false;        ///< met from outside only, and by no shadow ray
+  };
   std::vector<Ball> particles;
   std::vector<Plane> planes;
   std::vector<Box> boxes;
   std::vector<Ball> spheres;
+  std::vector<Solid> solids;
 };
 
 /// Nearest hits and visibility through Embree, by groups of rays that lie close together. Answers do not depend on the
@@ -59,6 +67,7 @@ class RayScene {
  private:
   void add_balls(const std::vector<RayGeometry::Ball>& balls, unsigned id);
   void add_boxes(unsigned id);
+  void add_solid(const RayGeometry::Solid& solid, unsigned id);
   Hit hit_of(const Ray& ray, const RTCRayHit8& packet, unsigned lane) const;
 
   RayGeometry geometry_;

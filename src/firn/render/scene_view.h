@@ -1,11 +1,13 @@
 #pragma once
 
 #include <firn/core/linear_algebra.h>
+#include <firn/geometry/shape_surface.h>
 #include <firn/render/image.h>
 #include <firn/state/snapshot.h>
 
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,6 +46,19 @@ struct DrawnSphere {
   Vec3f color = kDefaultColor;
 };
 
+/// A solid of any other shape. The surface stands for it in 3D and in the viewer, the section in pictures of 2D.
+struct DrawnSolid {
+  std::shared_ptr<const ShapeSurface> surface;  ///< in the solid's frame
+  ShapePointer<2> section = {};
+  Vec3d origin = {};
+  Mat3d rotation = identity<double, 3>();  ///< world from solid
+  double scale = 1;
+  Vec3f color = kDefaultColor;
+  bool endless = false;  ///< has no end, as the solid around a cavity: seen from outside only, and casts no shadow
+
+  Vec3d at(const Vec3d& x) const { return origin + rotation * (scale * x); }
+};
+
 /// How a snapshot is drawn.
 struct View {
   std::optional<Camera> camera;  ///< none: automatic_camera
@@ -66,6 +81,7 @@ struct View {
   std::vector<DrawnHalfSpace> half_spaces;
   std::vector<DrawnBox> boxes;
   std::vector<DrawnSphere> spheres;
+  std::vector<DrawnSolid> solids;
 };
 
 /// The picture of a snapshot, in 3D by casting rays on the threads of the enclosing task arena; the same bits on any
@@ -74,8 +90,8 @@ struct View {
 /// font.
 Image render_snapshot(const Snapshot& snapshot, const View& view);
 
-/// A camera that sees all particles (but for the outermost hundredth) and the boxes and spheres of the view, from the
-/// front right and above.
+/// A camera that sees all particles (but for the outermost hundredth) and the boxes, spheres and solids of the view,
+/// from the front right and above.
 Camera automatic_camera(const Snapshot& snapshot, const View& view);
 
 }  // namespace firn

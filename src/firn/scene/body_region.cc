@@ -60,9 +60,7 @@ class TurnedRegion final : public Region<dim> {
 std::unique_ptr<Region<3>> mesh_region(const Scene& scene, const BodySettings& body) {
   PreparedMesh prepared =
       prepare_mesh(read_mesh(scene.locate(body.mesh)), scene.locate(body.mesh).string(), scene.strict_mesh);
-  const Placement placement = {body.scale * metres_per_unit(body.units), rotation_from_degrees(body.rotation),
-                               body.position};
-  apply(placement, prepared.mesh);
+  apply(placement_of(body), prepared.mesh);
   return std::make_unique<MeshRegion>(prepared.mesh);
 }
 
@@ -77,6 +75,10 @@ std::unique_ptr<Region<2>> polygon_region(const Scene& scene, const BodySettings
 }
 
 }  // namespace
+
+Placement placement_of(const BodySettings& body) {
+  return {body.scale * metres_per_unit(body.units), rotation_from_degrees(body.rotation), body.position};
+}
 
 Mat3d rotation_from_degrees(const Vec3d& degrees) {
   Mat3d rotation = identity<double, 3>();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <firn/geometry/triangle_mesh.h>
 #include <firn/scene/settings.h>
 #include <firn/seeding/region.h>
 
@@ -27,6 +28,9 @@ std::unique_ptr<Region<dim>> region_of(const Scene& scene, const RegionSettings&
   body.position = settings.position;
   return body_region<dim>(scene, body);
 }
+
+/// Where the body's mesh goes, and how large.
+Placement placement_of(const BodySettings& body);
 
 /// Rotation by these angles about x, then y, then z, degrees.
 Mat3d rotation_from_degrees(const Vec3d& degrees);

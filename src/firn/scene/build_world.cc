@@ -1,10 +1,11 @@
 #include <firn/core/error.h>
-#include <firn/geometry/shapes.h>
 #include <firn/materials/model_info.h>
 #include <firn/scene/body_region.h>
 #include <firn/scene/build_world.h>
+#include <firn/scene/collider_shape.h>
 #include <firn/scene/force_fields.h>
 #include <firn/scene/initial_velocity.h>
+#include <firn/scene/vary_parameters.h>
 #include <firn/seeding/sampling.h>
 #include <fmt/format.h>
 
@@ -21,12 +22,6 @@ Vec<double, dim> cut(const Vec3d& v) {
   Vec<double, dim> r;
   for (int i = 0; i < dim; ++i) r[i] = v[i];
   return r;
-}
-
-template <int dim>
-Mat<double, dim> rotation_of(const Vec3d& degrees) {
-  if constexpr (dim == 3) return rotation_from_degrees(degrees);
-  if constexpr (dim == 2) return plane_rotation_from_degrees(degrees);
 }
 
 template <int dim>
@@ -77,6 +72,10 @@ WorldPlan plan_of(const Scene& scene, const Regions<dim>& regions) {
           ? *resolution.cell_size
           : std::pow(volume * resolution.particles_per_cell / static_cast<double>(*resolution.particles), 1.0 / dim);
   plan.cell_size = resolution.cell_size ? wanted_cell : fit_to_period<dim>(scene, wanted_cell);
+  for (const MaterialSettings& material : scene.materials) {
+    const std::string refusal = material_refusal(material, plan.cell_size);
+    if (!refusal.empty()) throw Error(ErrorKind::usage, fmt::format("material \"{}\": {}", material.name, refusal));
+  }
   // With a given cell size the particles per cell are asked for, with a given number of particles that number
   // is.
   const double particles_per_volume = resolution.cell_size
@@ -131,34 +130,12 @@ TransferSettings transfer_of(const MethodSettings& method) {
 }
 
 template <int dim>
-Collider<dim> collider_of(const ColliderSettings& settings) {
-  Collider<dim> collider;
-  collider.name = settings.name;
-  switch (settings.shape) {
-    case ColliderSettings::Shape::half_space:
-      collider.shape = std::make_shared<HalfSpace<dim>>(cut<dim>(settings.normal));
-      break;
-    case ColliderSettings::Shape::box:
-      collider.shape = std::make_shared<Box<dim>>(0.5 * cut<dim>(settings.size));
-      break;
-    case ColliderSettings::Shape::sphere:
-      collider.shape = std::make_shared<Sphere<dim>>(settings.radius);
-      break;
+std::vector<Collider<dim>> colliders_of(const Scene& scene, double cell_size) {
+  std::vector<Collider<dim>> colliders;
+  for (const ColliderSettings& collider : scene.colliders) {
+    colliders.push_back(make_collider<dim>(scene, collider, cell_size));
   }
-  collider.motion = {cut<dim>(settings.position), rotation_of<dim>(settings.rotation), cut<dim>(settings.velocity),
-                     spin_of<dim>(settings.angular_velocity)};
-  collider.contact = static_cast<Contact>(settings.contact);
-  collider.friction = settings.friction;
-  return collider;
-}
-
-ModelParameters parameters_of(const MaterialSettings& material, const ModelInfo& model) {
-  ModelParameters parameters;
-  parameters.density = material.density;
-  for (const Parameter& parameter : model.parameters) {
-    parameters.values.push_back(material.parameters.at(std::string(parameter.name)));
-  }
-  return parameters;
+  return colliders;
 }
 
 template <int dim>
@@ -173,7 +150,11 @@ Period<dim> period_of(const Scene& scene, double cell_size) {
 }  // namespace
 
 WorldPlan plan_world(const Scene& scene) {
-  return scene.dimension == 2 ? plan_of<2>(scene, regions_of<2>(scene)) : plan_of<3>(scene, regions_of<3>(scene));
+  const WorldPlan plan =
+      scene.dimension == 2 ? plan_of<2>(scene, regions_of<2>(scene)) : plan_of<3>(scene, regions_of<3>(scene));
+  if (scene.dimension == 2) warn_of_thin_colliders<2>(colliders_of<2>(scene, plan.cell_size), plan.cell_size);
+  if (scene.dimension == 3) warn_of_thin_colliders<3>(colliders_of<3>(scene, plan.cell_size), plan.cell_size);
+  return plan;
 }
 
 template <class Real, int dim>
@@ -182,11 +163,13 @@ BuiltWorld<Real, dim> build_world(const Scene& scene) {
   WorldPlan plan = plan_of<dim>(scene, regions);
   World<Real, dim> world(plan.cell_size, transfer_of(scene.method), period_of<dim>(scene, plan.cell_size));
   world.gravity = cut<dim>(scene.gravity);
-  world.body_force = force_of<dim>(scene);
-  for (const ColliderSettings& collider : scene.colliders) world.colliders.push_back(collider_of<dim>(collider));
+  const auto tractions = std::make_shared<Tractions<dim>>(scene);
+  world.body_force = force_of<dim>(scene, tractions);
+  world.colliders = colliders_of<dim>(scene, plan.cell_size);
+  warn_of_thin_colliders<dim>(world.colliders, plan.cell_size);
   for (const MaterialSettings& material : scene.materials) {
     const int model = model_number(material.model);
-    world.add_material(material.name, model, parameters_of(material, all_models()[static_cast<std::size_t>(model)]));
+    world.add_material(material.name, model, model_parameters(material, plan.cell_size));
   }
 
   std::uint32_t next_id = 0;
@@ -202,11 +185,17 @@ BuiltWorld<Real, dim> build_world(const Scene& scene) {
                                 next_id, static_cast<std::uint32_t>(b));
       set_initial_velocity(material.particles, first, body, samples.positions, plan.cell_size,
                            world.transfer.affine != 0);
+      vary_parameters<Real, dim>(scene, *scene.find_material(body.material), body,
+                                 {material, first, next_id, samples.positions});
     }
+    tractions->attach({b, *regions[b], samples.positions, next_id,
+                       scene.find_material(body.material)->density * samples.volume_per_sample,
+                       samples.volume_per_sample});
     plan.bodies[b].particles = static_cast<std::int64_t>(samples.positions.size());
     plan.particles += plan.bodies[b].particles;
     next_id += static_cast<std::uint32_t>(samples.positions.size());
   }
+  tractions->check();
   return {std::move(world), std::move(plan)};
 }
 

@@ -24,9 +24,9 @@ struct WorldPlan {
   std::vector<Body> bodies;
 };
 
-/// Reads meshes and measures bodies, without placing a particle. Warnings about meshes go to the log.
-/// Error(usage) for bodies that are too small for the cells or too large for the machine, and for what prepare_mesh
-/// refuses.
+/// Reads meshes and measures bodies, without placing a particle. Warnings about meshes and thin colliders go to the
+/// log. Error(usage) for bodies that are too small for the cells or too large for the machine, and for what
+/// prepare_mesh refuses.
 WorldPlan plan_world(const Scene& scene);
 
 /// A scene ready to be simulated.

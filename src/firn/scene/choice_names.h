@@ -42,8 +42,14 @@ struct ChoiceNames<BodySettings::Units> {
   static constexpr std::string_view list[] = {"m", "cm", "mm"};
 };
 template <>
-struct ChoiceNames<ColliderSettings::Shape> {
-  static constexpr std::string_view list[] = {"half_space", "box", "sphere"};
+struct ChoiceNames<ShapeSettings::Shape> {
+  static constexpr std::string_view list[] = {"half_space", "box",   "rounded_box",  "sphere",    "capsule",
+                                              "cylinder",   "cone",  "torus",        "polygon",   "height_field",
+                                              "mesh",       "union", "intersection", "difference"};
+};
+template <>
+struct ChoiceNames<ColliderSettings::Interpolation> {
+  static constexpr std::string_view list[] = {"linear", "smooth"};
 };
 template <>
 struct ChoiceNames<ColliderSettings::Contact> {
@@ -53,10 +59,6 @@ struct ChoiceNames<ColliderSettings::Contact> {
 template <>
 struct ChoiceNames<FieldSettings::Type> {
   static constexpr std::string_view list[] = {"acceleration", "attractor", "vortex", "wind"};
-};
-template <>
-struct ChoiceNames<PinSettings::Shape> {
-  static constexpr std::string_view list[] = {"box", "sphere"};
 };
 template <>
 struct ChoiceNames<ProbeSettings::Shape> {

@@ -3,20 +3,6 @@
 #include <firn/scene/value_text.h>
 
 namespace firn {
-namespace {
-
-void check_file(const SceneDraft& draft, std::string_view section, std::size_t index, std::string_view key,
-                const std::string& file) {
-  const std::filesystem::path path = draft.scene.locate(file);
-  std::error_code ignored;
-  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored)) return;
-  draft.fail(section, index, key,
-             fmt::format("{} {} is not a file (looked for {}); paths start at the scene file's folder", key,
-                         in_quotes(file), std::filesystem::absolute(path, ignored).lexically_normal().string()),
-             ErrorKind::files);
-}
-
-}  // namespace
 
 void check_place(const SceneDraft& draft, std::string_view section, std::size_t i, const std::string& mesh,
                  const std::string& polygon, const std::optional<BodySettings::Shape>& shape) {
@@ -40,7 +26,5 @@ void check_material(const SceneDraft& draft, std::string_view section, std::size
   draft.fail(section, i, "material",
              fmt::format("no [material.{}]{}", key_text(material), suggestion(material, names)));
 }
-
-Vec3d up_direction(const Scene& scene) { return scene.up == Scene::Up::y ? Vec3d{{0, 1, 0}} : Vec3d{{0, 0, 1}}; }
 
 }  // namespace firn

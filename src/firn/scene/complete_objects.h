@@ -31,10 +31,19 @@ void check_place(const SceneDraft& draft, std::string_view section, std::size_t 
 /// Refuses the name of a material that the scene does not have.
 void check_material(const SceneDraft& draft, std::string_view section, std::size_t i, const std::string& material);
 
-/// Emitters, sinks, fields, pins and probes.
-void complete_sources(SceneDraft& draft);
+/// Defaults and checks of a shape that is no region. @param earlier how many of the scene's parts it may be made of
+void complete_shape(SceneDraft& draft, std::string_view section, std::size_t i, ShapeSettings& shape,
+                    std::size_t earlier);
 
-/// The direction that `up` names.
-Vec3d up_direction(const Scene& scene);
+/// What keyframes leave out is `position`, `rotation` and 1. Refuses times that do not increase, turns that are not the
+/// shortest way, and keyframes beside a trajectory.
+void complete_keyframes(const SceneDraft& draft, std::string_view section, std::size_t i, const Vec3d& position,
+                        const Vec3d& rotation, std::vector<KeyframeSettings>& keyframes);
+
+/// The same for what may move at a constant velocity instead.
+void complete_motion(const SceneDraft& draft, std::string_view section, std::size_t i, ColliderSettings& collider);
+
+/// Emitters, sinks, fields, pins, tractions and probes.
+void complete_sources(SceneDraft& draft);
 
 }  // namespace firn

@@ -89,19 +89,6 @@ void complete_bodies(SceneDraft& draft) {
   }
 }
 
-void complete_colliders(SceneDraft& draft) {
-  Scene& scene = draft.scene;
-  complete_names(draft, "collider", scene.colliders);
-  for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
-    ColliderSettings& collider = scene.colliders[i];
-    if (collider.shape != ColliderSettings::Shape::half_space) continue;
-    if (!draft.has("collider", i, "normal")) collider.normal = up_direction(scene);
-    if (norm(collider.normal) == 0) draft.fail("collider", i, "normal", "normal must not be zero");
-    // A unit vector stays as it is, so that a resolved scene read back is the same scene.
-    if (std::abs(norm(collider.normal) - 1) > 1e-15) collider.normal = normalized(collider.normal);
-  }
-}
-
 void complete_pictures(SceneDraft& draft) {
   CameraSettings& camera = draft.scene.camera;
   if (!draft.has("camera", 0, "up")) camera.up = up_direction(draft.scene);
@@ -119,12 +106,27 @@ void complete_pictures(SceneDraft& draft) {
 
 }  // namespace
 
+Vec3d up_direction(const Scene& scene) { return scene.up == Scene::Up::y ? Vec3d{{0, 1, 0}} : Vec3d{{0, 0, 1}}; }
+
+void check_file(const SceneDraft& draft, std::string_view section, std::size_t index, std::string_view key,
+                const std::string& file) {
+  const std::filesystem::path path = draft.scene.locate(file);
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored)) return;
+  draft.fail(section, index, key,
+             fmt::format("{} {} is not a file (looked for {}); paths start at the scene file's folder", key,
+                         in_quotes(file), std::filesystem::absolute(path, ignored).lexically_normal().string()),
+             ErrorKind::files);
+}
+
 void complete_scene(SceneDraft& draft) {
   complete_root(draft);
   complete_method(draft);
   complete_limits(draft);
   complete_materials(draft);
   complete_bodies(draft);
+  complete_names(draft, "part", draft.scene.parts);
+  complete_names(draft, "collider", draft.scene.colliders);
   complete_colliders(draft);
   complete_sources(draft);
   complete_pictures(draft);

@@ -1,4 +1,5 @@
 #include <firn/scene/complete_objects.h>
+#include <firn/scene/nearest.h>
 #include <firn/scene/value_text.h>
 
 #include <algorithm>
@@ -16,13 +17,48 @@ void check_times(const SceneDraft& draft, std::string_view section, std::size_t 
       fmt::format("stop must be after start, got {} s and {} s", number_text(*object.stop), number_text(object.start)));
 }
 
+/// @param own_motion whether the object says how it moves in another way
+void check_moves_with(const SceneDraft& draft, std::string_view section, std::size_t i, const std::string& collider,
+                      bool own_motion) {
+  if (collider.empty()) return;
+  if (own_motion) {
+    draft.fail(section, i, "moves_with", "moves_with excludes a motion of its own; keep one");
+  }
+  std::vector<std::string> names;
+  for (const ColliderSettings& known : draft.scene.colliders) names.push_back(known.name);
+  if (std::ranges::find(names, collider) != names.end()) return;
+  draft.fail(section, i, "moves_with",
+             fmt::format("no [[collider]] has the name {}{}", in_quotes(collider),
+                         names.empty() ? "" : suggestion(collider, names)));
+}
+
+void complete_carried(SceneDraft& draft, std::string_view section, std::size_t i, RegionSettings& region) {
+  complete_keyframes(draft, section, i, region.position, region.rotation, region.keyframes);
+  if (!region.trajectory.empty()) check_file(draft, section, i, "trajectory", region.trajectory);
+  check_moves_with(draft, section, i, region.moves_with, !region.keyframes.empty() || !region.trajectory.empty());
+}
+
+/// Emitted particles have no mesh that values could be painted on.
+void check_not_painted(const SceneDraft& draft, std::size_t i, const std::string& name) {
+  const MaterialSettings& material = *draft.scene.find_material(name);
+  for (const auto& [parameter, variation] : material.varied) {
+    if (variation.kind != ParameterVariation::Kind::attribute) continue;
+    draft.fail("emitter", i, "material",
+               fmt::format("material {} has its {} painted on the mesh of a body, which an emitter does not have; give "
+                           "it a formula or a spread, or use another material",
+                           in_quotes(name), parameter));
+  }
+}
+
 void complete_emitters(SceneDraft& draft) {
   Scene& scene = draft.scene;
   complete_names(draft, "emitter", scene.emitters);
   for (std::size_t i = 0; i < scene.emitters.size(); ++i) {
-    const EmitterSettings& emitter = scene.emitters[i];
+    EmitterSettings& emitter = scene.emitters[i];
     check_place(draft, "emitter", i, emitter.mesh, emitter.polygon, emitter.shape);
     check_material(draft, "emitter", i, emitter.material);
+    check_not_painted(draft, i, emitter.material);
+    complete_carried(draft, "emitter", i, emitter);
     check_times(draft, "emitter", i, emitter);
     const bool has_body =
         std::ranges::any_of(scene.bodies, [&](const auto& body) { return body.name == emitter.name; });
@@ -45,9 +81,10 @@ void complete_emitters(SceneDraft& draft) {
 void complete_sinks(SceneDraft& draft) {
   complete_names(draft, "sink", draft.scene.sinks);
   for (std::size_t i = 0; i < draft.scene.sinks.size(); ++i) {
-    const SinkSettings& sink = draft.scene.sinks[i];
+    SinkSettings& sink = draft.scene.sinks[i];
     check_place(draft, "sink", i, sink.mesh, sink.polygon, sink.shape);
     check_times(draft, "sink", i, sink);
+    complete_carried(draft, "sink", i, sink);
   }
 }
 
@@ -82,7 +119,52 @@ void complete_fields(SceneDraft& draft) {
 
 void complete_pins(SceneDraft& draft) {
   complete_names(draft, "pin", draft.scene.pins);
-  for (std::size_t i = 0; i < draft.scene.pins.size(); ++i) check_times(draft, "pin", i, draft.scene.pins[i]);
+  for (std::size_t i = 0; i < draft.scene.pins.size(); ++i) {
+    PinSettings& pin = draft.scene.pins[i];
+    check_times(draft, "pin", i, pin);
+    complete_shape(draft, "pin", i, pin, draft.scene.parts.size());
+    complete_motion(draft, "pin", i, pin);
+    const bool moves = norm(pin.velocity) > 0 || norm(pin.angular_velocity) > 0;
+    check_moves_with(draft, "pin", i, pin.moves_with, moves || !pin.keyframes.empty() || !pin.trajectory.empty());
+  }
+}
+
+void complete_normal(const SceneDraft& draft, std::size_t i, TractionSettings& traction) {
+  if (!draft.has("traction", i, "normal")) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const NumberOrFormula& component = (*traction.stress)[static_cast<std::size_t>(axis)];
+      if (!component.formula.empty()) {
+        draft.fail("traction", i, "normal",
+                   "a stress with a formula needs normal, the direction of the face it acts on");
+      }
+      traction.normal[axis] = component.number;
+    }
+  }
+  if (norm(traction.normal) == 0) {
+    draft.fail("traction", i, "normal", "normal must not be zero; it is the direction of the face that stress acts on");
+  }
+  if (std::abs(norm(traction.normal) - 1) > 1e-15) traction.normal = normalized(traction.normal);
+}
+
+void complete_tractions(SceneDraft& draft) {
+  Scene& scene = draft.scene;
+  complete_names(draft, "traction", scene.tractions);
+  for (std::size_t i = 0; i < scene.tractions.size(); ++i) {
+    TractionSettings& traction = scene.tractions[i];
+    check_place(draft, "traction", i, traction.mesh, traction.polygon, traction.shape);
+    check_times(draft, "traction", i, traction);
+    if (traction.stress) complete_normal(draft, i, traction);
+    if (traction.pressure && norm(traction.normal) > 0) {
+      draft.fail("traction", i, "normal", "normal goes with stress; a pressure acts along the surface's own");
+    }
+    if (traction.body.empty()) continue;
+    std::vector<std::string> names;
+    for (const BodySettings& body : scene.bodies) names.push_back(body.name);
+    if (std::ranges::find(names, traction.body) != names.end()) continue;
+    draft.fail("traction", i, "body",
+               fmt::format("no [[body]] has the name {}{}", in_quotes(traction.body),
+                           names.empty() ? "" : suggestion(traction.body, names)));
+  }
 }
 
 void complete_probes(SceneDraft& draft) {
@@ -106,6 +188,7 @@ void complete_sources(SceneDraft& draft) {
   complete_sinks(draft);
   complete_fields(draft);
   complete_pins(draft);
+  complete_tractions(draft);
   complete_probes(draft);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -33,6 +34,12 @@ struct Node {
   const Array* array() const { return std::get_if<Array>(&value); }
   Table* table() { return std::get_if<Table>(&value); }
   Array* array() { return std::get_if<Array>(&value); }
+  /// Of a number with or without a point.
+  std::optional<double> number() const {
+    if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
+    if (const auto* real = std::get_if<double>(&value)) return *real;
+    return std::nullopt;
+  }
   /// Null if this is not a table or has no such key.
   const Entry* find(std::string_view key) const;
   Entry* find(std::string_view key);

@@ -84,20 +84,22 @@ Vec3d padded(const Vec<double, dim>& v) {
 }  // namespace
 
 template <int dim>
-BodyForce<dim> force_of(const Scene& scene) {
-  if (scene.fields.empty()) return {};
+BodyForce<dim> force_of(const Scene& scene, std::shared_ptr<const Tractions<dim>> tractions) {
+  if (scene.tractions.empty()) tractions = nullptr;
+  if (scene.fields.empty() && !tractions) return {};
   const auto fields = std::make_shared<std::vector<ForceField>>();
   for (const FieldSettings& settings : scene.fields) fields->emplace_back(settings, 1e-9 / scene.frame_rate);
-  return BodyForce<dim>([fields](const Vec<double, dim>& x, const Vec<double, dim>& v, std::uint32_t, double t) {
-    const Vec3d place = padded<dim>(x), velocity = padded<dim>(v);
-    Vec3d sum = {};
-    for (const ForceField& field : *fields) {
-      if (field.acts(place, t, dim)) sum += field.acceleration(place, velocity, t);
-    }
-    Vec<double, dim> result;
-    for (int i = 0; i < dim; ++i) result[i] = sum[i];
-    return result;
-  });
+  return BodyForce<dim>(
+      [fields, tractions](const Vec<double, dim>& x, const Vec<double, dim>& v, std::uint32_t id, double t) {
+        const Vec3d place = padded<dim>(x), velocity = padded<dim>(v);
+        Vec3d sum = {};
+        for (const ForceField& field : *fields) {
+          if (field.acts(place, t, dim)) sum += field.acceleration(place, velocity, t);
+        }
+        Vec<double, dim> result = tractions ? tractions->acceleration(x, id, t) : Vec<double, dim>{};
+        for (int i = 0; i < dim; ++i) result[i] += sum[i];
+        return result;
+      });
 }
 
 double shortest_response_time(const Scene& scene) {
@@ -108,7 +110,7 @@ double shortest_response_time(const Scene& scene) {
   return shortest;
 }
 
-template BodyForce<2> force_of<2>(const Scene&);
-template BodyForce<3> force_of<3>(const Scene&);
+template BodyForce<2> force_of<2>(const Scene&, std::shared_ptr<const Tractions<2>>);
+template BodyForce<3> force_of<3>(const Scene&, std::shared_ptr<const Tractions<3>>);
 
 }  // namespace firn

@@ -28,6 +28,18 @@ Json list_schema(const Json& items, int least, int most) {
   return {{"type", "array"}, {"items", items}, {"minItems", least}, {"maxItems", most}};
 }
 
+/// The tables of read_variation().
+Json variation_schema() {
+  const Json number = {{"type", "number"}}, text = {{"type", "string"}}, seed = {{"type", "integer"}, {"minimum", 0}};
+  const Json properties = {
+      {"value", number}, {"spread", number}, {"distribution", {{"type", "string"}, {"enum", {"normal", "lognormal"}}}},
+      {"from", number},  {"to", number},     {"attribute", text},
+      {"scale", number}, {"seed", seed}};
+  return {{"type", "object"}, {"additionalProperties", false}, {"properties", properties}};
+}
+
+Json keyframe_schema();
+
 Json type_schema(const Key& key) {
   const Json number = number_schema(key, "number");
   switch (key.type) {
@@ -37,12 +49,16 @@ Json type_schema(const Key& key) {
       return number_schema(key, "integer");
     case ValueType::number:
       return number;
+    case ValueType::varied:
+      return {{"anyOf", {number, {{"type", "string"}}, variation_schema()}}};
     case ValueType::text:
       return {{"type", "string"}};
     case ValueType::choice:
       return {{"type", "string"}, {"enum", key.choices}};
     case ValueType::vector:
       return list_schema(number, 2, 3);
+    case ValueType::formula:
+      return {{"anyOf", {number, {{"type", "string"}}}}};
     case ValueType::formulas:
       return list_schema({{"anyOf", {number, {{"type", "string"}}}}}, 2, 3);
     case ValueType::vector3:
@@ -53,8 +69,22 @@ Json type_schema(const Key& key) {
       return list_schema(number, 2, 2);
     case ValueType::box:
       return list_schema(list_schema(number, 2, 3), 2, 2);
+    case ValueType::texts:
+      return {{"type", "array"}, {"items", {{"type", "string"}}}};
+    case ValueType::keyframes:
+      return {{"type", "array"}, {"items", keyframe_schema()}};
   }
   return {};
+}
+
+Json keyframe_schema() {
+  Json properties = Json::object(), required = Json::array();
+  for (const Key& key : keyframe_keys()) {
+    Json& schema = properties[std::string(key.info.name)] = type_schema(key);
+    schema["description"] = fmt::format("{}{}", key.info.help, key.required ? " Required." : "");
+    if (key.required) required.push_back(key.info.name);
+  }
+  return {{"type", "object"}, {"additionalProperties", false}, {"properties", properties}, {"required", required}};
 }
 
 Json key_schema(const Section& section, const Key& key) {

@@ -65,6 +65,13 @@ struct FieldTraits<Vec3d> {
 };
 
 template <>
+struct FieldTraits<NumberOrFormula> {
+  static constexpr ValueType type = ValueType::formula;
+  static Value to_value(const NumberOrFormula& field) { return std::vector<NumberOrFormula>{field}; }
+  static NumberOrFormula from_value(const Value& value) { return std::get<std::vector<NumberOrFormula>>(value)[0]; }
+};
+
+template <>
 struct FieldTraits<std::array<NumberOrFormula, 3>> {
   using Field = std::array<NumberOrFormula, 3>;
   static constexpr ValueType type = ValueType::formulas;
@@ -82,6 +89,22 @@ struct FieldTraits<std::array<double, 2>> {
   static std::array<double, 2> from_value(const Value& value) {
     const auto& numbers = std::get<std::vector<double>>(value);
     return {numbers[0], numbers[1]};
+  }
+};
+
+template <>
+struct FieldTraits<std::vector<std::string>> {
+  static constexpr ValueType type = ValueType::texts;
+  static Value to_value(const std::vector<std::string>& field) { return field; }
+  static std::vector<std::string> from_value(const Value& value) { return std::get<std::vector<std::string>>(value); }
+};
+
+template <>
+struct FieldTraits<std::vector<KeyframeSettings>> {
+  static constexpr ValueType type = ValueType::keyframes;
+  static Value to_value(const std::vector<KeyframeSettings>& field) { return field; }
+  static std::vector<KeyframeSettings> from_value(const Value& value) {
+    return std::get<std::vector<KeyframeSettings>>(value);
   }
 };
 
@@ -122,8 +145,8 @@ class KeyBuilder {
     };
     key_.get = [member](const void* object) -> std::optional<Value> {
       const Field& field = static_cast<const Object*>(object)->*member;
-      if constexpr (std::is_same_v<Field, std::string>) {
-        return field.empty() ? std::nullopt : std::optional<Value>(field);
+      if constexpr (requires { field.empty(); }) {
+        return field.empty() ? std::nullopt : std::optional<Value>(FieldTraits<T>::to_value(field));
       } else if constexpr (std::is_same_v<Field, T>) {
         return FieldTraits<T>::to_value(field);
       } else {

@@ -200,6 +200,11 @@ const MaterialSettings* Scene::find_material(std::string_view name) const {
   return found == materials.end() ? nullptr : &*found;
 }
 
+const PartSettings* Scene::find_part(std::string_view name) const {
+  const auto found = std::ranges::find_if(parts, [&](const PartSettings& part) { return part.name == name; });
+  return found == parts.end() ? nullptr : &*found;
+}
+
 Scene parse_scene(const std::string& text, const std::filesystem::path& path,
                   const std::vector<std::string>& overrides) {
   Document document = parse_document(path.string(), text);

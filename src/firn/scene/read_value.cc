@@ -2,6 +2,7 @@
 #include <firn/core/expression.h>
 #include <firn/scene/nearest.h>
 #include <firn/scene/read_value.h>
+#include <firn/scene/read_variation.h>
 #include <firn/scene/value_text.h>
 
 #include <fmt/format.h>
@@ -29,10 +30,15 @@ class ValueReader {
         return choice();
       case ValueType::number:
         return number(node_);
+      case ValueType::varied:
+        if (node_.table() || std::holds_alternative<std::string>(node_.value)) return read_variation(key_, node_);
+        return number(node_);
       case ValueType::integer:
         return integer();
       case ValueType::vector:
         return padded(list(node_, static_cast<std::size_t>(dimension_)));
+      case ValueType::formula:
+        return std::vector<NumberOrFormula>{number_or_formula(node_)};
       case ValueType::formulas:
         return formulas();
       case ValueType::vector3:
@@ -43,6 +49,10 @@ class ValueReader {
         return rotation();
       case ValueType::box:
         return box();
+      case ValueType::texts:
+        return texts();
+      case ValueType::keyframes:
+        return keyframes();
     }
     wrong_type();
   }
@@ -96,14 +106,9 @@ class ValueReader {
   }
 
   double number(const Node& node) const {
-    double value = 0;
-    if (const auto* whole = std::get_if<std::int64_t>(&node.value)) {
-      value = static_cast<double>(*whole);
-    } else if (const auto* real = std::get_if<double>(&node.value)) {
-      value = *real;
-    } else {
-      wrong_type();
-    }
+    const std::optional<double> given = node.number();
+    if (!given) wrong_type();
+    const double value = *given;
     if (!in_range(key_.info, value)) out_of_range(number_text(value));
     return value;
   }
@@ -165,6 +170,51 @@ class ValueReader {
     const std::vector<double> upper = padded(list((*corners)[1], static_cast<std::size_t>(dimension_)));
     numbers.insert(numbers.end(), upper.begin(), upper.end());
     return numbers;
+  }
+
+  Value texts() const {
+    const Node::Array* array = node_.array();
+    if (!array) wrong_type();
+    std::vector<std::string> found;
+    for (const Node& element : *array) {
+      const auto* text = std::get_if<std::string>(&element.value);
+      if (!text) fail(fmt::format("must be {}, got {} in it", type_text(key_), element.describe()));
+      found.push_back(*text);
+    }
+    return found;
+  }
+
+  Value keyframes() const {
+    const Node::Array* array = node_.array();
+    if (!array) wrong_type();
+    std::vector<KeyframeSettings> frames;
+    for (const Node& element : *array) {
+      const std::string label = fmt::format("entry {}", frames.size() + 1);
+      if (!element.table()) fail(fmt::format("{} must be a table {{ time, ... }}, got {}", label, element.describe()));
+      frames.push_back(keyframe(element, label));
+    }
+    return frames;
+  }
+
+  KeyframeSettings keyframe(const Node& node, const std::string& label) const {
+    KeyframeSettings frame;
+    std::vector<std::string> names;
+    for (const Key& key : keyframe_keys()) names.emplace_back(key.info.name);
+    for (const Node::Entry& entry : *node.table()) {
+      if (std::ranges::find(names, entry.key) != names.end()) continue;
+      fail(fmt::format("{}: unknown key {}{}", label, in_quotes(entry.key), suggestion(entry.key, names)));
+    }
+    for (const Key& key : keyframe_keys()) {
+      const Node::Entry* entry = node.find(key.info.name);
+      if (!entry && key.required) fail(fmt::format("{}: {} is required", label, key.info.name));
+      if (!entry) continue;
+      try {
+        key.set(&frame, ValueReader(key, entry->node, dimension_).read());
+      } catch (const Error& error) {
+        fail(fmt::format("{}: {}", label, error.what()));
+      }
+    }
+    return frame;
   }
 
   const Key& key_;

@@ -28,6 +28,15 @@ struct SceneDraft {
                          ErrorKind kind = ErrorKind::usage) const;
 };
 
+/// The part of complete_scene() that is about [[part]] and [[collider]].
+void complete_colliders(SceneDraft& draft);
+
+/// Throws Error(files), located, unless a path of the scene names a file.
+void check_file(const SceneDraft& draft, std::string_view section, std::size_t index, std::string_view key,
+                const std::string& file);
+
+Vec3d up_direction(const Scene& scene);
+
 /// Fills in the defaults that depend on other keys, and refuses combinations of keys that make no sense together.
 /// Throws Error(usage), or Error(files) for a mesh or polygon that does not exist.
 void complete_scene(SceneDraft& draft);

@@ -45,7 +45,7 @@ std::optional<Value> default_value(const Section& section, const Key& key) {
   Scene scene;
   if (const std::optional<Value> value = key.get(section.add(scene))) return value;
   // A material's number that depends on the model has no value before the model is known.
-  if (key.type == ValueType::number) return Value(key.info.default_value);
+  if (key.type == ValueType::varied) return Value(key.info.default_value);
   return std::nullopt;
 }
 
@@ -75,12 +75,16 @@ std::string type_text(const Key& key, int dimension) {
       return "a whole number";
     case ValueType::number:
       return "a number";
+    case ValueType::varied:
+      return "a number, a formula in quotes or a table";
     case ValueType::text:
       return "text in quotes";
     case ValueType::choice:
       return "one of " + quoted_list(key.choices);
     case ValueType::vector:
       return dimension == 0 ? "a list of 3 numbers (2 in a 2D scene)" : fmt::format("a list of {} numbers", dimension);
+    case ValueType::formula:
+      return "a number or a formula in quotes";
     case ValueType::formulas:
       return dimension == 0 ? "a list of 3 numbers or formulas in quotes (2 in a 2D scene)"
                             : fmt::format("a list of {} numbers or formulas in quotes", dimension);
@@ -93,6 +97,10 @@ std::string type_text(const Key& key, int dimension) {
       return "a list of 2 numbers, the lower first";
     case ValueType::box:
       return "two corners, [[lowest], [highest]]";
+    case ValueType::texts:
+      return "a list of texts in quotes";
+    case ValueType::keyframes:
+      return "a list of tables { time, position, rotation, scale }";
   }
   return "";
 }

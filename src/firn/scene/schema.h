@@ -19,19 +19,24 @@ enum class ValueType {
   boolean,
   integer,
   number,
+  varied,  ///< a number, or what makes it differ between the particles of a material
   text,
   choice,
   vector,    ///< one number per dimension
+  formula,   ///< a number or a formula
   formulas,  ///< one number or formula per dimension
   vector3,   ///< three numbers, also in 2D
   rotation,  ///< one number in 2D, three in 3D
   interval,  ///< two numbers, the lower first
   box,       ///< two vectors: lowest and highest corner
+  texts,     ///< a list of names
+  keyframes  ///< a list of tables with the keys of keyframe_keys()
 };
 
-/// A value of any ValueType. Lists of numbers are stored for 3D (vector and formulas: 3, interval: 2, box: 6 numbers);
-/// a rotation in 2D is the third of its three numbers.
-using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<NumberOrFormula>>;
+/// A value of any ValueType. A formula is a list of one. Lists of numbers are stored for 3D (vector and formulas: 3,
+/// interval: 2, box: 6 numbers); a rotation in 2D is the third of its three numbers.
+using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<NumberOrFormula>,
+                           ParameterVariation, std::vector<std::string>, std::vector<KeyframeSettings>>;
 
 /// One key. `info` holds name, unit, range (of each number), help and hint.
 struct Key {
@@ -76,6 +81,8 @@ struct Section {
 
 /// In the order in which a scene is read and written.
 std::span<const Section> schema();
+/// Of one element of a list of keyframes; fields of KeyframeSettings.
+std::span<const Key> keyframe_keys();
 /// Null if there is none.
 const Section* find_section(std::string_view name);
 

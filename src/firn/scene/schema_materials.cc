@@ -3,6 +3,7 @@
 #include <firn/scene/schema_table.h>
 
 #include <algorithm>
+#include <tuple>
 
 namespace firn {
 namespace {
@@ -81,7 +82,7 @@ Key density_key() {
 Key parameter_key(const Parameter& parameter) {
   Key key;
   key.info = parameter;
-  key.type = ValueType::number;
+  key.type = ValueType::varied;
   key.required = !in_range(parameter, parameter.default_value);
   for (const ModelInfo& model : all_models()) {
     if (std::ranges::any_of(model.parameters, [&](const Parameter& p) { return p.name == parameter.name; })) {
@@ -94,9 +95,19 @@ Key parameter_key(const Parameter& parameter) {
     key.condition_values.clear();
   }
   const std::string name(parameter.name);
-  key.set = [name](void* object, const Value& value) { material(object).parameters[name] = std::get<double>(value); };
+  key.set = [name, fallback = parameter.default_value](void* object, const Value& value) {
+    MaterialSettings& settings = material(object);
+    settings.varied.erase(name);
+    if (const double* number = std::get_if<double>(&value)) {
+      settings.parameters[name] = *number;
+    } else {
+      settings.parameters.emplace(name, fallback);
+      settings.varied[name] = std::get<ParameterVariation>(value);
+    }
+  };
   key.get = [name](const void* object) -> std::optional<Value> {
-    const auto& parameters = material(object).parameters;
+    const auto& [parameters, varied] = std::tie(material(object).parameters, material(object).varied);
+    if (const auto variation = varied.find(name); variation != varied.end()) return variation->second;
     const auto found = parameters.find(name);
     if (found == parameters.end()) return std::nullopt;
     return found->second;

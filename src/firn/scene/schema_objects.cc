@@ -1,6 +1,6 @@
 #include <firn/scene/choice_names.h>
+#include <firn/scene/list_section.h>
 #include <firn/scene/schema_table.h>
-#include <firn/scene/section_builder.h>
 
 namespace firn {
 namespace {
@@ -60,66 +60,6 @@ Section make_body_section() {
           .at_least(0)
           .at_most(1)
           .default_text("the material's look")
-          .presentation()
-          .help("Red, green, blue: linear reflectance."),
-  };
-  section.keys.insert(section.keys.end(), more.begin(), more.end());
-  return section;
-}
-
-namespace {
-
-std::vector<Key> collider_shape_keys() {
-  return {
-      K("name", &ColliderSettings::name).default_text("collider<index>").presentation().help("Names the collider."),
-      K("shape", &ColliderSettings::shape)
-          .required()
-          .help("half_space is all that lies behind a plane (a line in 2D)."),
-      K("normal", &ColliderSettings::normal)
-          .only_with("shape", {"half_space"})
-          .default_text("along `up`")
-          .help("Direction out of the solid; any length but zero."),
-      K("size", &ColliderSettings::size)
-          .unit("m")
-          .above(0)
-          .required()
-          .only_with("shape", {"box"})
-          .help("Edge lengths."),
-      K("radius", &ColliderSettings::radius)
-          .unit("m")
-          .above(0)
-          .required()
-          .only_with("shape", {"sphere"})
-          .help("Radius; the sphere is a disk in 2D."),
-  };
-}
-
-}  // namespace
-
-Section make_collider_section() {
-  Section section = list_section("collider", &Scene::colliders, "A rigid obstacle; one [[collider]] each.");
-  section.keys = collider_shape_keys();
-  const std::vector<Key> more = {
-      K("position", &ColliderSettings::position)
-          .unit("m")
-          .help("Centre at t = 0, or a point on the half space's plane."),
-      K("rotation", &ColliderSettings::rotation)
-          .type(ValueType::rotation)
-          .unit("degrees")
-          .help("At t = 0, about the fixed axes x, then y, then z; one angle in 2D."),
-      K("velocity", &ColliderSettings::velocity).unit("m/s").help("Constant."),
-      K("angular_velocity", &ColliderSettings::angular_velocity)
-          .type(ValueType::rotation)
-          .unit("rad/s")
-          .help("Constant, about `position`."),
-      K("contact", &ColliderSettings::contact)
-          .help("sticky: what touches moves along; slip: slides and never leaves; separate: slides and may leave."),
-      K("friction", &ColliderSettings::friction).at_least(0).help("Coulomb's coefficient, for slip and separate."),
-      K("color", &ColliderSettings::color)
-          .type(ValueType::vector3)
-          .at_least(0)
-          .at_most(1)
-          .default_text("grey")
           .presentation()
           .help("Red, green, blue: linear reflectance."),
   };

@@ -1,6 +1,6 @@
 #include <firn/scene/choice_names.h>
+#include <firn/scene/list_section.h>
 #include <firn/scene/schema_table.h>
-#include <firn/scene/section_builder.h>
 
 namespace firn {
 namespace {
@@ -55,6 +55,30 @@ std::vector<Key> region_keys() {
   };
 }
 
+/// The keys of what may move.
+template <class Settings>
+std::vector<Key> carried_keys() {
+  using C = CarriedSettings;
+  using S = Settings;
+  return {
+      K("moves_with", of<S>(static_cast<std::string RegionSettings::*>(&C::moves_with)))
+          .default_text("none")
+          .help("Name of a [[collider]] that carries it along; `position` and `rotation` are those at t = 0."),
+      K("keyframes", of<S>(static_cast<std::vector<KeyframeSettings> RegionSettings::*>(&C::keyframes)))
+          .default_text("none")
+          .help("Motion of its own: { time = s, position = m, rotation = degrees, scale = factor } each; what is left "
+                "out is `position`, `rotation` and 1. At rest before the first and after the last."),
+      K("trajectory", of<S>(static_cast<std::string RegionSettings::*>(&C::trajectory)))
+          .path()
+          .default_text("none")
+          .help("Motion from a text file, as that of a collider; the path starts at the scene file's folder."),
+      K("interpolation", of<S>(static_cast<ColliderSettings::Interpolation RegionSettings::*>(&C::interpolation)))
+          .help(
+              "Between keyframes or rows: linear: constant velocities; smooth: continuous velocities, at rest at both "
+              "ends."),
+  };
+}
+
 void add(std::vector<Key>& keys, std::vector<Key> more) { keys.insert(keys.end(), more.begin(), more.end()); }
 
 }  // namespace
@@ -66,10 +90,14 @@ Section make_emitter_section() {
   section.keys = {
       K("name", of<E>(&RegionSettings::name)).default_text("emitter<index>").help("Names the emitter in output.")};
   add(section.keys, region_keys<E>());
+  add(section.keys, carried_keys<E>());
   add(section.keys,
       {
           K("material", &E::material).required().help("Name of a [material.<name>]."),
-          K("velocity", &E::velocity).unit("m/s").help("Of the material that comes out; a rate needs one."),
+          K("velocity", &E::velocity)
+              .unit("m/s")
+              .help("Of the material that comes out, relative to the emitter and turning with it, as at t = 0; a rate "
+                    "needs one."),
           K("mass_rate", &E::mass_rate)
               .unit("kg/s")
               .above(0)
@@ -105,6 +133,7 @@ Section make_sink_section() {
   section.keys = {
       K("name", of<S>(&RegionSettings::name)).default_text("sink<index>").help("Names the sink in output.")};
   add(section.keys, region_keys<S>());
+  add(section.keys, carried_keys<S>());
   add(section.keys, time_keys(of<S>(&RegionSettings::start), of<S>(&RegionSettings::stop)));
   return section;
 }
@@ -179,27 +208,32 @@ Section make_field_section() {
   return section;
 }
 
-Section make_pin_section() {
-  using P = PinSettings;
-  Section section = list_section("pin", &Scene::pins,
-                                 "A region that holds the material inside, or carries it along; one [[pin]] each.");
+Section make_traction_section() {
+  using T = TractionSettings;
+  Section section = list_section("traction", &Scene::tractions,
+                                 "A force per area on a part of the bodies' surface; one [[traction]] each.");
+  section.exactly_one_of = {{"mesh", "polygon", "shape"}, {"pressure", "stress"}};
   section.keys = {
-      K("name", &P::name).default_text("pin<index>").presentation().help("Names the pin."),
-      K("shape", &P::shape).required().help("box or sphere (a disk in 2D), centred on `position`."),
-      K("size", &P::size).unit("m").above(0).required().only_with("shape", {"box"}).help("Edge lengths."),
-      K("radius", &P::radius).unit("m").above(0).required().only_with("shape", {"sphere"}).help("Radius."),
-      K("position", &P::position).unit("m").help("Centre at the start."),
-      K("rotation", &P::rotation)
-          .type(ValueType::rotation)
-          .unit("degrees")
-          .help("At the start, about the fixed axes x, then y, then z; one angle in 2D."),
-      K("velocity", &P::velocity).unit("m/s").help("Of the region and of the material inside; constant."),
-      K("angular_velocity", &P::angular_velocity)
-          .type(ValueType::rotation)
-          .unit("rad/s")
-          .help("Of the region and of the material inside, about `position`; constant."),
-  };
-  add(section.keys, time_keys(&P::start, &P::stop));
+      K("name", of<T>(&RegionSettings::name)).default_text("traction<index>").presentation().help("In messages.")};
+  add(section.keys, region_keys<T>());
+  add(section.keys,
+      {
+          K("body", &T::body).default_text("all bodies").help("Name of the [[body]] whose surface it is."),
+          K("pressure", &T::pressure)
+              .unit("Pa")
+              .default_text("none")
+              .help("Pushes all of the surface inside the shape inwards; a number or a formula of the place x, y, z "
+                    "and the time t. Negative: pulls."),
+          K("stress", &T::stress)
+              .unit("Pa")
+              .default_text("none")
+              .help("Force per area on the surface that faces `normal`: normal stress, shear stress or both; each "
+                    "component a number or a formula of the place x, y, z and the time t."),
+          K("normal", &T::normal)
+              .default_text("along `stress`")
+              .help("Direction in which the surface under `stress` faces, out of the body; areas are seen along it."),
+      });
+  add(section.keys, time_keys(of<T>(&RegionSettings::start), of<T>(&RegionSettings::stop)));
   return section;
 }
 

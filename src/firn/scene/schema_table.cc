@@ -174,6 +174,13 @@ Section render() {
           .presentation()
           .help("Lowest and highest value of the colour bar, in the unit of the column."),
       K("film", &RenderSettings::film).presentation().help("Join the pictures to film.mp4."),
+      K("film_rate", &RenderSettings::film_rate)
+          .unit("1/s")
+          .above(0)
+          .at_most(240)
+          .default_text("as fast as it happened, at most 60")
+          .presentation()
+          .help("Pictures per second of the film: fewer than are taken per simulated second play it in slow motion."),
       K("every_nth", &RenderSettings::every_nth)
           .at_least(0)
           .presentation()
@@ -202,11 +209,13 @@ std::vector<Section> make_schema() {
           limits(),
           make_material_section(),
           make_body_section(),
+          make_part_section(),
           make_collider_section(),
           make_emitter_section(),
           make_sink_section(),
           make_field_section(),
           make_pin_section(),
+          make_traction_section(),
           make_probe_section(),
           camera(),
           render(),

@@ -2,6 +2,7 @@
 
 #include <firn/core/linear_algebra.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -53,12 +54,29 @@ struct LimitSettings {
   std::optional<Box> box;
 };
 
+/// A model's parameter that differs between the particles of a material; fixed when they are placed.
+struct ParameterVariation {
+  enum class Kind { formula, spread, range, attribute };
+  enum class Distribution { lognormal, normal };
+
+  Kind kind = Kind::formula;
+  std::string text;   ///< the formula of x, y, z (m), or the name of the mesh's attribute
+  double value = 0;   ///< mean of a spread
+  double spread = 0;  ///< standard deviation over the mean
+  Distribution distribution = Distribution::lognormal;  ///< of a spread
+  double from = 0, to = 0;                              ///< of a range, in which each value is as likely
+  std::optional<std::uint64_t> seed;                    ///< of what is random; the scene's without it
+  double scale = 1;                                     ///< factor on the attribute
+  bool operator==(const ParameterVariation&) const = default;
+};
+
 struct MaterialSettings {
   std::string name;
   std::string preset;  ///< "" without one
   std::string model;
   double density = 0;                        ///< kg/m^3
   std::map<std::string, double> parameters;  ///< every parameter of the model, in the unit that the model declares
+  std::map<std::string, ParameterVariation> varied;  ///< of these, what differs between particles
 };
 
 struct BodySettings {
@@ -83,26 +101,77 @@ struct BodySettings {
   std::optional<Vec3d> color;                    ///< linear RGB
 };
 
-struct ColliderSettings {
-  enum class Shape { half_space, box, sphere };
-  enum class Contact { sticky, slip, separate };
+/// A solid that colliders consist of.
+struct ShapeSettings {
+  enum class Shape {
+    half_space,
+    box,
+    rounded_box,
+    sphere,
+    capsule,
+    cylinder,
+    cone,
+    torus,
+    polygon,
+    height_field,
+    mesh,
+    union_,
+    intersection,
+    difference
+  };
 
   std::string name;
   Shape shape = Shape::half_space;
-  Vec3d normal = {};            ///< of a half space, out of the solid; unit length
-  Vec3d size = {};              ///< edge lengths of a box, m
-  double radius = 0;            ///< of a sphere, m
-  Vec3d position = {};          ///< centre, or a point of the half space's surface, m
-  Vec3d rotation = {};          ///< degrees, about x, then y, then z
+  Vec3d normal = {};               ///< of a half space, out of the solid; unit length
+  Vec3d size = {};                 ///< edge lengths of a box, extent of a height field, m
+  double radius = 0;               ///< m
+  double top_radius = 0;           ///< of a cone, m
+  double tube_radius = 0;          ///< of a torus, m
+  double length = 0;               ///< along `axis`, m
+  Vec3d axis = {};                 ///< of capsule, cylinder, cone and torus; any length but zero
+  std::string file;                ///< of polygon, height field and mesh, as written in the scene
+  double scale = 1;                ///< of the coordinates of polygon and mesh
+  double depth = 0;                ///< of a height field below its lowest point, m
+  std::vector<std::string> parts;  ///< names of Scene::parts
+  bool inverted = false;
+  Vec3d position = {};  ///< centre, or a point of the half space's surface, m
+  Vec3d rotation = {};  ///< degrees, about x, then y, then z
+};
+
+struct PartSettings : ShapeSettings {};
+
+/// What is not set is the collider's own `position` and `rotation` and a scale of 1; complete_scene() sets it.
+struct KeyframeSettings {
+  double time = 0;                ///< s
+  std::optional<Vec3d> position;  ///< m
+  std::optional<Vec3d> rotation;  ///< degrees, about x, then y, then z
+  std::optional<double> scale;
+};
+
+struct ColliderSettings : ShapeSettings {
+  enum class Contact { sticky, slip, separate };
+  enum class Interpolation { linear, smooth };
+
   Vec3d velocity = {};          ///< m/s
   Vec3d angular_velocity = {};  ///< rad/s, about `position`
+  std::vector<KeyframeSettings> keyframes;
+  std::string trajectory;  ///< file, as written in the scene; "" without
+  Interpolation interpolation = Interpolation::linear;
   Contact contact = Contact::separate;
   double friction = 0;
   std::optional<Vec3d> color;  ///< linear RGB
 };
 
+/// How a place moves: not at all, with a collider, or by itself.
+struct CarriedSettings {
+  std::string moves_with;                   ///< name of one of Scene::colliders; "" without
+  std::vector<KeyframeSettings> keyframes;  ///< instead of position and rotation
+  std::string trajectory;                   ///< file, as written in the scene; "" without
+  ColliderSettings::Interpolation interpolation = ColliderSettings::Interpolation::linear;
+};
+
 /// Where an emitter or a sink is: as a body, but without its own material.
-struct RegionSettings {
+struct RegionSettings : CarriedSettings {
   std::string name;
   std::string mesh;                          ///< file, as written in the scene; "" unless the region is a mesh
   std::string polygon;                       ///< file, as written in the scene; "" unless the region is a polygon
@@ -147,20 +216,22 @@ struct FieldSettings {
   std::optional<double> stop;                        ///< s; without it: never
 };
 
-/// A region that holds the material inside, or carries it along.
-struct PinSettings {
-  enum class Shape { box, sphere };
+/// A region that holds the material inside, or carries it along: a sticky collider that may be full. A constant
+/// velocity begins at `start`, with the pin at `position`. Of a collider's settings, contact, friction and colour are
+/// not used.
+struct PinSettings : ColliderSettings {
+  std::string moves_with;      ///< name of one of Scene::colliders; "" without
+  double start = 0;            ///< s
+  std::optional<double> stop;  ///< s; without it: never
+};
 
-  std::string name;
-  Shape shape = Shape::box;
-  Vec3d size = {};              ///< edge lengths of a box, m
-  double radius = 0;            ///< of a sphere, m
-  Vec3d position = {};          ///< centre at t = start, m
-  Vec3d rotation = {};          ///< degrees at t = start, about x, then y, then z
-  Vec3d velocity = {};          ///< m/s
-  Vec3d angular_velocity = {};  ///< rad/s, about `position`
-  double start = 0;             ///< s
-  std::optional<double> stop;   ///< s; without it: never
+/// A force per area on the part of the bodies' surface that lies inside a region at t = 0. One of pressure and stress
+/// is set.
+struct TractionSettings : RegionSettings {
+  std::string body;                                           ///< name of one of Scene::bodies; "" for all
+  std::optional<NumberOrFormula> pressure;                    ///< Pa, into the body; formula of x, y, z (m) and t (s)
+  std::optional<std::array<NumberOrFormula, 3>> stress = {};  ///< Pa; formulas of x, y, z (m) and t (s)
+  Vec3d normal = {};                                          ///< of the face that stress acts on, out of the body
 };
 
 /// Points at which density, velocity and pressure are written for every frame.
@@ -187,7 +258,12 @@ struct RenderSettings {
   std::string color_by = "material";
   std::optional<std::array<double, 2>> range;  ///< of the coloured quantity, in its unit; without it: automatic
   bool film = true;
-  int every_nth = 1;  ///< 0: no pictures
+  std::optional<double> film_rate;  ///< pictures per second of the film
+  int every_nth = 1;                ///< 0: no pictures
+
+  /// Pictures per second of a film whose pictures are taken `rate` times per simulated second: as fast as it happened,
+  /// or in slow motion where nobody could follow.
+  double film_rate_of(double rate) const { return film_rate.value_or(std::min(rate, 60.0)); }
 };
 
 struct OutputSettings {
@@ -216,11 +292,13 @@ struct Scene {
   LimitSettings limits;
   std::vector<MaterialSettings> materials;
   std::vector<BodySettings> bodies;
+  std::vector<PartSettings> parts;
   std::vector<ColliderSettings> colliders;
   std::vector<EmitterSettings> emitters;
   std::vector<SinkSettings> sinks;
   std::vector<FieldSettings> fields;
   std::vector<PinSettings> pins;
+  std::vector<TractionSettings> tractions;
   std::vector<ProbeSettings> probes;
   CameraSettings camera;
   RenderSettings render;
@@ -230,6 +308,8 @@ struct Scene {
 
   /// A path of the scene (mesh, polygon) as the program must open it: relative ones start at the scene file's folder.
   std::filesystem::path locate(const std::string& path_in_scene) const { return file.parent_path() / path_in_scene; }
+  /// Null if there is no such part.
+  const PartSettings* find_part(std::string_view name) const;
   /// Null if there is no such material.
   const MaterialSettings* find_material(std::string_view name) const;
 };

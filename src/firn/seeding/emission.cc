@@ -1,5 +1,6 @@
 #include <firn/core/error.h>
 #include <firn/seeding/emission.h>
+#include <firn/seeding/surface_lines.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,17 +25,6 @@ constexpr double kronecker_step(int direction) {
   return direction == 0 ? 1 / g : 1 / (g * g);
 }
 
-std::vector<Vec2d> directions_across(const Vec2d& d) { return {{{-d[1], d[0]}}}; }
-
-std::vector<Vec3d> directions_across(const Vec3d& d) {
-  int least = 0;
-  for (int i = 1; i < 3; ++i) least = std::abs(d[i]) < std::abs(d[least]) ? i : least;
-  Vec3d helper = {};
-  helper[least] = 1;
-  const Vec3d first = normalized(cross(d, helper));
-  return {first, cross(d, first)};
-}
-
 }  // namespace
 
 template <int dim>
@@ -45,7 +35,7 @@ SectionStream<dim>::SectionStream(std::shared_ptr<const Region<dim>> region, con
   centre_ = bounds.center();
   const Vec<double, dim> half = 0.5 * bounds.size();
   double rectangle = 1;
-  for (const Vec<double, dim>& direction : directions_across((1 / norm(velocity)) * velocity)) {
+  for (const Vec<double, dim>& direction : directions_across(velocity)) {
     double reach = 0;
     for (int i = 0; i < dim; ++i) reach += std::abs(direction[i]) * half[i];
     across_.push_back(reach * direction);
@@ -91,11 +81,17 @@ std::int64_t SectionStream<dim>::count_at(double time) const {
 
 template <int dim>
 std::vector<Emitted<dim>> SectionStream<dim>::between(std::int64_t from, std::int64_t to, double time,
-                                                      const Vec<double, dim>& gravity) {
+                                                      const Vec<double, dim>& gravity, const PoseAt<dim>& frame) {
   std::vector<Emitted<dim>> emitted;
   for (std::int64_t k = from; k < to; ++k) {
-    const double age = time - (static_cast<double>(k) + 0.5) / rate_;
-    emitted.push_back({place(k) + age * velocity_ + (0.5 * age * age) * gravity, velocity_ + age * gravity});
+    const double began = (static_cast<double>(k) + 0.5) / rate_, age = time - began;
+    Vec<double, dim> x = place(k), v = velocity_;
+    if (frame) {
+      const Pose<dim> pose = frame(began);
+      x = to_world<dim>(pose, x);
+      v = pose.rotation * v + pose.velocity_at(x);
+    }
+    emitted.push_back({x + age * v + (0.5 * age * age) * gravity, v + age * gravity});
   }
   return emitted;
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <firn/geometry/pose.h>
 #include <firn/seeding/region.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -18,6 +20,10 @@ struct Emitted {
   Vec<double, dim> x;  ///< m
   Vec<double, dim> v;  ///< m/s
 };
+
+/// Where the frame of an emitter is at a time after its start, s.
+template <int dim>
+using PoseAt = std::function<Pose<dim>(double time)>;
 
 /// Particles that come at a given rate out of the section of a region across the velocity, through the middle of the
 /// region's bounds. The k-th (from 0) comes at (k + 1/2) / rate. Its place follows a Kronecker sequence over the
@@ -38,8 +44,10 @@ class SectionStream {
   /// How many have come after this time, s. At most a half of a particle off rate times time.
   std::int64_t count_at(double time) const;
 
-  /// Number `from` to before `to`, at `time` (s) after the first could come, in free fall since each came.
-  std::vector<Emitted<dim>> between(std::int64_t from, std::int64_t to, double time, const Vec<double, dim>& gravity);
+  /// Number `from` to before `to`, at `time` (s) after the first could come, in free fall since each came. With a
+  /// frame, region and velocity are in that, and each particle leaves it from where it was when the particle came.
+  std::vector<Emitted<dim>> between(std::int64_t from, std::int64_t to, double time, const Vec<double, dim>& gravity,
+                                    const PoseAt<dim>& frame = {});
 
  private:
   Vec<double, dim> candidate(std::int64_t j) const;

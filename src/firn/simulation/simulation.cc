@@ -4,6 +4,7 @@
 #include <firn/integrators/verbs.h>
 #include <firn/materials/model_info.h>
 #include <firn/measure/output_columns.h>
+#include <firn/scene/vary_parameters.h>
 #include <firn/simulation/runaways.h>
 #include <firn/simulation/simulation.h>
 #include <firn/simulation/sources.h>
@@ -94,7 +95,10 @@ class SimulationOf final : public Simulation {
       if (!kept_) break;
     }
     const std::string text = describe(*failure, report_.dt);
-    if (kept_) restore();
+    if (kept_) {
+      restore();
+      report_ = kept_->report;
+    }
     throw Error(ErrorKind::numerical, text);
   }
 
@@ -111,12 +115,13 @@ class SimulationOf final : public Simulation {
       smallest = smallest == 0 ? each : std::min(smallest, each);
     }
     snapshot.particle_spacing = std::pow(smallest, 1.0 / dim);
+    const std::vector<Parameter> varied = varied_parameters(scene_);
     arena_.execute([&] {
       for (std::size_t m = 0; m < world_->materials.size(); ++m) {
         const auto& material = world_->materials[m];
         const MaterialSettings& settings = scene_.materials[m];
         append_to_snapshot<Real, dim>(snapshot, material.particles, material.model, material.parameters,
-                                      {material.name, settings.model, settings.preset}, world_->grid.dx(),
+                                      {material.name, settings.model, settings.preset, varied}, world_->grid.dx(),
                                       world_->transfer.kernel);
       }
     });
@@ -169,6 +174,7 @@ class SimulationOf final : public Simulation {
     std::uint64_t steps;
     std::int64_t parked;
     typename Sources<Real, dim>::Counts counts;
+    FrameReport report;
   };
 
   void keep() {
@@ -184,6 +190,7 @@ class SimulationOf final : public Simulation {
     kept_->steps = world_->steps;
     kept_->parked = guard_.parked();
     kept_->counts = sources_->counts();
+    kept_->report = report_;
   }
 
   void restore() {

@@ -2,15 +2,16 @@
 #include <firn/core/log.h>
 #include <firn/integrators/step.h>
 #include <firn/integrators/verbs.h>
-#include <firn/scene/body_region.h>
 #include <firn/scene/force_fields.h>
 #include <firn/scene/pin_collider.h>
+#include <firn/scene/vary_parameters.h>
 #include <firn/simulation/sources.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace firn {
 namespace {
@@ -66,9 +67,15 @@ Sources<Real, dim>::Sources(const Scene& scene, const WorldPlan& plan, World<Rea
       response_time_(shortest_response_time(scene)),
       first_id_(plan.particles),
       collider_count_(world.colliders.size()) {
-  for (const EmitterSettings& emitter : scene_.emitters) add_emitter(emitter, plan, world);
-  for (const SinkSettings& sink : scene_.sinks) sinks_.push_back(region_of<dim>(scene_, sink));
-  for (const PinSettings& pin : scene_.pins) pins_.push_back(pin_collider<dim>(pin));
+  for (const EmitterSettings& emitter : scene_.emitters) add_emitter(emitter, world);
+  for (const SinkSettings& sink : scene_.sinks) {
+    Carried<dim> frame(scene_, sink);
+    auto region = frame.region(scene_);
+    sink_speed_ =
+        std::max(sink_speed_, frame.fastest(region->bounds(), sink.start, sink.stop.value_or(scene.end_time)));
+    sinks_.push_back({std::move(frame), std::move(region)});
+  }
+  for (const PinSettings& pin : scene_.pins) pins_.push_back(pin_collider<dim>(scene_, pin, plan.cell_size));
   const auto add_events = [&](const auto& objects) {
     for (const auto& object : objects) {
       events_.push_back(object.start);
@@ -79,6 +86,7 @@ Sources<Real, dim>::Sources(const Scene& scene, const WorldPlan& plan, World<Rea
   add_events(scene_.sinks);
   add_events(scene_.fields);
   add_events(scene_.pins);
+  add_events(scene_.tractions);
   std::sort(events_.begin(), events_.end());
   counts_.emitted.resize(emitters_.size());
   counts_.removed.resize(sinks_.size());
@@ -86,21 +94,20 @@ Sources<Real, dim>::Sources(const Scene& scene, const WorldPlan& plan, World<Rea
 }
 
 template <class Real, int dim>
-void Sources<Real, dim>::add_emitter(const EmitterSettings& settings, const WorldPlan& plan,
-                                     const World<Real, dim>& world) {
+void Sources<Real, dim>::add_emitter(const EmitterSettings& settings, const World<Real, dim>& world) {
   const std::string name = fmt::format("emitter \"{}\"", settings.name);
-  Emitter emitter;
-  emitter.settings = &settings;
-  emitter.region = region_of<dim>(scene_, settings);
-  emitter.velocity = cut<dim>(settings.velocity);
+  Emitter emitter = {&settings, Carried<dim>(scene_, settings), nullptr, {}};
+  emitter.region = emitter.frame.region(scene_);
+  emitter.velocity = transpose(emitter.frame.pose_at(0).rotation) * cut<dim>(settings.velocity);
   emitter.body = scene_.bodies.size() + emitters_.size();
   const auto material = std::find_if(world.materials.begin(), world.materials.end(),
                                      [&](const auto& m) { return m.name == settings.material; });
   emitter.material = static_cast<std::size_t>(material - world.materials.begin());
   const double speed = norm(emitter.velocity);
-  const double fall = std::sqrt(norm(world.gravity) * spacing_);
-  emitter.interval =
-      std::min(0.5 * spacing_ / (settings.keep_full ? std::max(speed, fall) : speed), 1 / scene_.frame_rate);
+  emitter.fastest =
+      speed + emitter.frame.fastest(emitter.region->bounds(), settings.start, settings.stop.value_or(scene_.end_time));
+  const double fall = settings.keep_full ? std::sqrt(norm(world.gravity) * spacing_) : 0;
+  emitter.interval = std::min(0.5 * spacing_ / std::max(emitter.fastest, fall), 1 / scene_.frame_rate);
 
   if (!settings.keep_full) {
     const double volume_rate =
@@ -115,14 +122,9 @@ void Sources<Real, dim>::add_emitter(const EmitterSettings& settings, const Worl
                       name, filled, emitter.stream->area(), dim - 1, speed));
     }
   }
-  // What limits the time step is not known from particles before there are any.
-  World<Real, dim> sample(plan.cell_size, world.transfer, world.grid.period());
-  auto& alone = sample.add_material(material->name, material->model, material->parameters);
-  alone.particles.append(std::vector<Vec<double, dim>>(1), plan.cell_size, world.transfer.kernel, world.grid.period(),
-                         material->parameters.density * particle_volume_, particle_volume_, 0, 0);
-  prepare(sample);
-  emitter.wave_speed = alone.wave_speed;
-  emitter.viscosity = alone.kinematic_viscosity;
+  if (material->parameters.varied.empty()) {
+    measure_limits(world, emitter, {{emitter.region->bounds().center(), {}}}, 0);
+  }
   emitters_.push_back(std::move(emitter));
 }
 
@@ -140,13 +142,24 @@ std::int64_t Sources<Real, dim>::slot(const Emitter& emitter, double t) const {
 }
 
 template <class Real, int dim>
+void Sources<Real, dim>::resume(std::vector<SourceCount> emitted, std::vector<SourceCount> removed, double t) {
+  counts_ = {std::move(emitted), std::move(removed), {}, 0};
+  for (const Emitter& emitter : emitters_) counts_.last_slot.push_back(slot(emitter, t));
+}
+
+template <class Real, int dim>
 auto Sources<Real, dim>::longest_step(const World<Real, dim>& world, double t, double particle_cfl) const -> Bound {
   Bound bound = {kDragShare * response_time_, "wind"};
   for (const Emitter& emitter : emitters_) {
     if (!is_active(emitter.settings->start, emitter.settings->stop, t)) continue;
-    const double speed = norm(emitter.velocity);
-    const double dt = speed > 0 ? particle_cfl * world.grid.dx() / speed : emitter.interval;
+    const double dt = emitter.fastest > 0 ? particle_cfl * world.grid.dx() / emitter.fastest : emitter.interval;
     if (dt < bound.dt) bound = {dt, "emitter"};
+  }
+  for (std::size_t i = 0; i < pins_.size(); ++i) {
+    // Later the grid has seen it.
+    if (std::abs(t - scene_.pins[i].start) > tolerance_ || !pins_[i].shape->is_bounded()) continue;
+    const double dt = particle_cfl * world.grid.dx() / fastest_in<dim>(pins_[i].pose_at(t), pins_[i].shape->bounds());
+    if (dt < bound.dt) bound = {dt, "pin"};
   }
   return bound;
 }
@@ -160,7 +173,7 @@ double Sources<Real, dim>::next_event(double t) const {
 template <class Real, int dim>
 bool Sources<Real, dim>::due(const World<Real, dim>& world, double dt) {
   const double t = world.t + dt;
-  counts_.travelled += dt * world.max_speed;
+  counts_.travelled += dt * (world.max_speed + sink_speed_);
   for (std::size_t e = 0; e < emitters_.size(); ++e) {
     if (slot(emitters_[e], t) > counts_.last_slot[e]) return true;
   }
@@ -192,9 +205,9 @@ void Sources<Real, dim>::set_pins(World<Real, dim>& world) const {
 
 template <class Real, int dim>
 bool Sources<Real, dim>::emit(World<Real, dim>& world, std::size_t e) {
-  const Emitter& emitter = emitters_[e];
+  Emitter& emitter = emitters_[e];
   SourceCount& count = counts_.emitted[e];
-  const std::vector<Emitted<dim>> particles = new_particles(world, emitters_[e], count.particles);
+  const std::vector<Emitted<dim>> particles = new_particles(world, emitter, count.particles);
   if (particles.empty()) return false;
   std::int64_t id = first_id_;
   for (const SourceCount& other : counts_.emitted) id += other.particles;
@@ -204,10 +217,17 @@ bool Sources<Real, dim>::emit(World<Real, dim>& world, std::size_t e) {
                             "lower its rate or use larger cells",
                             emitter.settings->name, world.t, id));
   }
-  append(world, emitter, particles, static_cast<std::uint32_t>(id));
+  auto& material = world.materials[emitter.material];
+  if (!material.parameters.varied.empty()) measure_limits(world, emitter, particles, static_cast<std::uint32_t>(id));
+  append(material, world, emitter, particles, static_cast<std::uint32_t>(id));
+  material.wave_speed = std::max(material.wave_speed, emitter.wave_speed);
+  material.kinematic_viscosity = std::max(material.kinematic_viscosity, emitter.viscosity);
+  double fastest = 0;
+  for (const Emitted<dim>& particle : particles) fastest = std::max(fastest, norm(particle.v));
+  material.max_speed = std::max(material.max_speed, fastest);
+  world.max_speed = std::max(world.max_speed, fastest);
   count.particles += static_cast<std::int64_t>(particles.size());
-  count.mass =
-      static_cast<double>(count.particles) * particle_volume_ * world.materials[emitter.material].parameters.density;
+  count.mass = static_cast<double>(count.particles) * particle_volume_ * material.parameters.density;
   return true;
 }
 
@@ -215,17 +235,38 @@ template <class Real, int dim>
 std::vector<Emitted<dim>> Sources<Real, dim>::new_particles(const World<Real, dim>& world, Emitter& emitter,
                                                             std::int64_t already) const {
   const EmitterSettings& settings = *emitter.settings;
+  if (!emitter.stream) return fill_up(world, emitter);
   const double age = world.t - settings.start;
-  if (emitter.stream) {
-    const double last = settings.stop ? std::min(age, *settings.stop - settings.start) : age;
-    // The tolerance makes a particle that comes at the end of a frame come in that frame whatever the rounding.
-    return emitter.stream->between(already, emitter.stream->count_at(last + tolerance_), age, world.gravity);
-  }
+  const double last = settings.stop ? std::min(age, *settings.stop - settings.start) : age;
+  PoseAt<dim> frame;
+  if (emitter.frame.moves()) frame = [&](double time) { return emitter.frame.pose_at(settings.start + time); };
+  // The tolerance makes a particle that comes at the end of a frame come in that frame whatever the rounding.
+  return emitter.stream->between(already, emitter.stream->count_at(last + tolerance_), age, world.gravity, frame);
+}
+
+template <class Real, int dim>
+std::vector<Emitted<dim>> Sources<Real, dim>::fill_up(const World<Real, dim>& world, const Emitter& emitter) const {
+  const EmitterSettings& settings = *emitter.settings;
   if (!is_active(settings.start, settings.stop, world.t)) return {};
-  const auto points = moving_lattice<dim>(*emitter.region, spacing_, emitter.velocity, age);
-  const auto taken = occupied(world, emitter.region->bounds());
+  const Pose<dim> pose = emitter.frame.pose_at(world.t);
+  const auto in_frame = moving_lattice<dim>(*emitter.region, spacing_ / pose.scale, (1 / pose.scale) * emitter.velocity,
+                                            world.t - settings.start);
+  std::vector<PosedCollider<dim>> solids;
+  for (const Collider<dim>& collider : world.colliders) {
+    if (!collider.is_filled) solids.emplace_back(collider, world.t);
+  }
+  std::vector<Vec<double, dim>> points;
+  for (const Vec<double, dim>& place : in_frame) {
+    const Vec<double, dim> x = to_world<dim>(pose, place);
+    if (std::none_of(solids.begin(), solids.end(), [&](const auto& solid) { return solid.distance(x) < 0; })) {
+      points.push_back(x);
+    }
+  }
+  const auto taken = occupied(world, bounds_in_world<dim>(pose, emitter.region->bounds()));
   std::vector<Emitted<dim>> particles;
-  for (const auto& x : with_room<dim>(points, taken, kRoom * spacing_)) particles.push_back({x, emitter.velocity});
+  for (const auto& x : with_room<dim>(points, taken, kRoom * spacing_)) {
+    particles.push_back({x, pose.rotation * emitter.velocity + pose.velocity_at(x)});
+  }
   return particles;
 }
 
@@ -248,38 +289,48 @@ std::vector<Vec<double, dim>> Sources<Real, dim>::occupied(const World<Real, dim
 }
 
 template <class Real, int dim>
-void Sources<Real, dim>::append(World<Real, dim>& world, const Emitter& emitter,
-                                const std::vector<Emitted<dim>>& particles, std::uint32_t first_id) {
-  auto& material = world.materials[emitter.material];
+void Sources<Real, dim>::append(MaterialSet<Real, dim>& material, const World<Real, dim>& world, const Emitter& emitter,
+                                const std::vector<Emitted<dim>>& particles, std::uint32_t first_id) const {
   std::vector<Vec<double, dim>> positions;
   for (const Emitted<dim>& particle : particles) positions.push_back(particle.x);
   const std::size_t first = material.particles.size();
   material.particles.append(positions, world.grid.dx(), world.transfer.kernel, world.grid.period(),
                             material.parameters.density * particle_volume_, particle_volume_, first_id,
                             static_cast<std::uint32_t>(emitter.body));
-  double fastest = 0;
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    fastest = std::max(fastest, norm(particles[i].v));
-    for (int d = 0; d < dim; ++d) {
-      material.particles.real(Field::velocity, d)[first + i] = static_cast<Real>(particles[i].v[d]);
-    }
+  for (int d = 0; d < dim; ++d) {
+    const auto velocity = material.particles.real(Field::velocity, d);
+    for (std::size_t i = 0; i < particles.size(); ++i) velocity[first + i] = static_cast<Real>(particles[i].v[d]);
   }
-  material.max_speed = std::max(material.max_speed, fastest);
-  world.max_speed = std::max(world.max_speed, fastest);
-  material.wave_speed = std::max(material.wave_speed, emitter.wave_speed);
-  material.kinematic_viscosity = std::max(material.kinematic_viscosity, emitter.viscosity);
+  BodySettings body;
+  body.name = emitter.settings->name;
+  vary_parameters<Real, dim>(scene_, *scene_.find_material(material.name), body,
+                             {material, first, first_id, positions});
+}
+
+template <class Real, int dim>
+void Sources<Real, dim>::measure_limits(const World<Real, dim>& world, Emitter& emitter,
+                                        const std::vector<Emitted<dim>>& particles, std::uint32_t first_id) const {
+  const auto& material = world.materials[emitter.material];
+  World<Real, dim> alone(world.grid.dx(), world.transfer, world.grid.period());
+  auto& sample = alone.add_material(material.name, material.model, material.parameters);
+  append(sample, alone, emitter, particles, first_id);
+  prepare(alone);
+  emitter.wave_speed = sample.wave_speed;
+  emitter.viscosity = sample.kinematic_viscosity;
 }
 
 template <class Real, int dim>
 bool Sources<Real, dim>::remove(World<Real, dim>& world, std::size_t s) {
   if (!is_active(scene_.sinks[s].start, scene_.sinks[s].stop, world.t)) return false;
-  const Region<dim>& region = *sinks_[s];
+  const Region<dim>& region = *sinks_[s].region;
+  const Pose<dim> pose = sinks_[s].frame.pose_at(world.t);
   SourceCount& count = counts_.removed[s];
   const std::int64_t before = count.particles;
   for (auto& material : world.materials) {
     std::vector<std::uint32_t> places;
-    for_each_near(material.particles, world.grid, region.bounds(), [&](std::uint32_t p) {
-      if (!region.contains(material.particles.position(p, world.grid.dx(), world.grid.kernel()))) return;
+    for_each_near(material.particles, world.grid, bounds_in_world<dim>(pose, region.bounds()), [&](std::uint32_t p) {
+      const auto x = material.particles.position(p, world.grid.dx(), world.grid.kernel());
+      if (!region.contains(to_frame<dim>(pose, x))) return;
       places.push_back(p);
       count.mass += static_cast<double>(material.particles.real(Field::mass)[p]);
     });

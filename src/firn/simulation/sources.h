@@ -2,6 +2,7 @@
 
 #include <firn/integrators/world.h>
 #include <firn/scene/build_world.h>
+#include <firn/scene/carried.h>
 #include <firn/scene/settings.h>
 #include <firn/seeding/emission.h>
 #include <firn/simulation/source_count.h>
@@ -35,6 +36,8 @@ class Sources {
 
   const Counts& counts() const { return counts_; }
   void restore(const Counts& counts) { counts_ = counts; }
+  /// Goes on from the end of a frame at time t, s, of which nothing is known but what counts() had then.
+  void resume(std::vector<SourceCount> emitted, std::vector<SourceCount> removed, double t);
 
   /// A bound on the next step, s, and its name: fast inflow must keep the CFL condition before the grid has seen it,
   /// and wind must not overshoot.
@@ -58,29 +61,41 @@ class Sources {
  private:
   struct Emitter {
     const EmitterSettings* settings;
-    std::shared_ptr<const Region<dim>> region;
-    std::optional<SectionStream<dim>> stream;  ///< of a rate
+    Carried<dim> frame;
+    std::shared_ptr<const Region<dim>> region;  ///< in its frame
+    std::optional<SectionStream<dim>> stream;   ///< of a rate
     std::size_t material = 0, body = 0;
-    Vec<double, dim> velocity = {};
-    double interval = 0;                   ///< between times to act, s
-    double wave_speed = 0, viscosity = 0;  ///< of the material at rest, m/s and m^2/s
+    Vec<double, dim> velocity = {};  ///< of the material in its frame, m/s
+    double fastest = 0;              ///< bound on the speed of what comes, m/s
+    double interval = 0;             ///< between times to act, s
+    /// Of its material at rest, m/s and m^2/s; where a parameter varies, each particle has its own.
+    double wave_speed = 0, viscosity = 0;
+  };
+  struct Sink {
+    Carried<dim> frame;
+    std::unique_ptr<Region<dim>> region;  ///< in its frame
   };
 
-  void add_emitter(const EmitterSettings& settings, const WorldPlan& plan, const World<Real, dim>& world);
+  void add_emitter(const EmitterSettings& settings, const World<Real, dim>& world);
   std::int64_t slot(const Emitter& emitter, double t) const;
+  /// What new particles ask of time steps before any step has seen them.
+  void measure_limits(const World<Real, dim>& world, Emitter& emitter, const std::vector<Emitted<dim>>& particles,
+                      std::uint32_t first_id) const;
+  std::vector<Emitted<dim>> fill_up(const World<Real, dim>& world, const Emitter& emitter) const;
   bool is_active(double start, const std::optional<double>& stop, double t) const;
   bool emit(World<Real, dim>& world, std::size_t e);
   std::vector<Emitted<dim>> new_particles(const World<Real, dim>& world, Emitter& emitter, std::int64_t already) const;
   std::vector<Vec<double, dim>> occupied(const World<Real, dim>& world, const Bounds<dim>& bounds) const;
-  void append(World<Real, dim>& world, const Emitter& emitter, const std::vector<Emitted<dim>>& particles,
-              std::uint32_t first_id);
+  void append(MaterialSet<Real, dim>& material, const World<Real, dim>& world, const Emitter& emitter,
+              const std::vector<Emitted<dim>>& particles, std::uint32_t first_id) const;
   bool remove(World<Real, dim>& world, std::size_t s);
 
   const Scene& scene_;
   double particle_volume_, spacing_, tolerance_, response_time_;
+  double sink_speed_ = 0;  ///< of the fastest sink, m/s
   std::int64_t first_id_;
   std::vector<Emitter> emitters_;
-  std::vector<std::unique_ptr<Region<dim>>> sinks_;
+  std::vector<Sink> sinks_;
   std::vector<Collider<dim>> pins_;
   std::size_t collider_count_;
   std::vector<double> events_;

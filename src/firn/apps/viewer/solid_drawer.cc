@@ -129,6 +129,18 @@ Mat3d from_columns(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
 
 Vec3f drawn(const Vec3f& color, const Vec3f& otherwise) { return color[0] < 0 ? otherwise : color; }
 
+void fill(const GlVertexArray& array, const GlBuffer& buffer, const Vertices& vertices) {
+  glBindVertexArray(array.id());
+  glBindBuffer(GL_ARRAY_BUFFER, buffer.id());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(float)), vertices.data(),
+               GL_STATIC_DRAW);
+  for (GLuint i = 0; i < 2; ++i) {
+    glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float), reinterpret_cast<const void*>(i * 12UL));
+    glEnableVertexAttribArray(i);
+  }
+  glBindVertexArray(0);
+}
+
 }  // namespace
 
 SolidDrawer::SolidDrawer()
@@ -141,15 +153,35 @@ SolidDrawer::SolidDrawer()
   sphere_count_ = 6 * kRings * kSectors;
   plane_first_ = sphere_first_ + sphere_count_;
   add_plane(&vertices);
-  glBindVertexArray(array_.id());
-  glBindBuffer(GL_ARRAY_BUFFER, vertices_.id());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(float)), vertices.data(),
-               GL_STATIC_DRAW);
-  for (GLuint i = 0; i < 2; ++i) {
-    glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float), reinterpret_cast<const void*>(i * 12UL));
-    glEnableVertexAttribArray(i);
+  fill(array_, vertices_, vertices);
+}
+
+const SolidDrawer::Uploaded& SolidDrawer::upload(const std::shared_ptr<const ShapeSurface>& surface) const {
+  const auto [entry, is_new] = uploaded_.try_emplace(surface.get());
+  if (!is_new) return entry->second;
+  Vertices vertices;
+  const TriangleMesh& mesh = surface->mesh;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (int c = 0; c < 3; ++c) {
+      const Vec3f& n = surface->normals[t][static_cast<std::size_t>(c)];
+      add(&vertices, mesh.corner(t, c), {{n[0], n[1], n[2]}});
+    }
   }
-  glBindVertexArray(0);
+  entry->second.surface = surface;
+  entry->second.count = static_cast<int>(3 * mesh.triangles.size());
+  fill(entry->second.array, entry->second.vertices, vertices);
+  return entry->second;
+}
+
+void SolidDrawer::draw_solids(const View& view, const Vec3d& origin) const {
+  for (const DrawnSolid& solid : view.solids) {
+    const Uploaded& uploaded = upload(solid.surface);
+    glBindVertexArray(uploaded.array.id());
+    if (solid.endless) glEnable(GL_CULL_FACE);
+    draw_mesh(0, uploaded.count, solid.origin - origin, solid.scale * solid.rotation,
+              drawn(solid.color, kColliderColor));
+    glDisable(GL_CULL_FACE);
+  }
 }
 
 void SolidDrawer::draw_sky(const View& view, const OrbitCamera& camera, double aspect) const {
@@ -212,6 +244,8 @@ void SolidDrawer::draw(const View& view, const OrbitCamera& camera, double aspec
     const Mat3d axes = diagonal(constant_vector<double, 3>(sphere.radius));
     draw_mesh(sphere_first_, sphere_count_, sphere.center - origin, axes, drawn(sphere.color, kColliderColor));
   }
+  draw_solids(view, origin);
+  glBindVertexArray(array_.id());
   const Camera& c = camera.camera();
   for (const DrawnHalfSpace& solid : view.half_spaces) {
     const Vec3d n = normalized(solid.normal);

@@ -3,6 +3,9 @@
 #include <firn/apps/viewer/gl_object.h>
 #include <firn/render/scene_view.h>
 
+#include <map>
+#include <memory>
+
 namespace firn {
 
 /// Draws the colliders of a view and the sky behind them.
@@ -15,11 +18,22 @@ class SolidDrawer {
   void draw(const View& view, const OrbitCamera& camera, double aspect, const Vec3d& origin) const;
 
  private:
+  /// A surface in the memory of the graphics card.
+  struct Uploaded {
+    std::shared_ptr<const ShapeSurface> surface;  ///< kept, so that no other one gets its address
+    GlVertexArray array;
+    GlBuffer vertices;
+    int count = 0;
+  };
+
+  const Uploaded& upload(const std::shared_ptr<const ShapeSurface>& surface) const;
+  void draw_solids(const View& view, const Vec3d& origin) const;
   void draw_mesh(int first, int count, const Vec3d& center, const Mat3d& axes, const Vec3f& color) const;
 
   GlProgram sky_, solid_;
   GlVertexArray array_;
   GlBuffer vertices_;
+  mutable std::map<const ShapeSurface*, Uploaded> uploaded_;
   int sphere_first_ = 0, sphere_count_ = 0, plane_first_ = 0;
 };
 

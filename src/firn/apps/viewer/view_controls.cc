@@ -13,8 +13,8 @@ constexpr double kZoomPerNotch = 0.88;
 
 }  // namespace
 
-ViewControls::ViewControls(const Scene& scene, FrameSource& source) : scene_(scene), source_(source) {
-  const View view = scene_view(scene, 0);
+ViewControls::ViewControls(const Scene& scene, FrameSource& source) : scene_(scene), drawing_(scene_), source_(source) {
+  const View view = drawing_.view_at(0);
   color_by = view.color_by;
   range = view.color_range;
   status_ = source.status();
@@ -86,7 +86,7 @@ std::vector<std::string> ViewControls::choices() const {
 }
 
 View ViewControls::view() const {
-  View view = scene_view(scene_, snapshot_ != nullptr ? snapshot_->time : 0);
+  View view = drawing_.view_at(snapshot_ != nullptr ? snapshot_->time : 0);
   // A column that the frame lacks is no reason to show nothing.
   view.color_by = snapshot_ != nullptr && snapshot_->find(color_by) == nullptr ? "" : color_by;
   view.color_range = range;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <firn/apps/scene_view.h>
 #include <firn/apps/viewer/frame_source.h>
 #include <firn/apps/viewer/orbit_camera.h>
 #include <firn/render/scene_view.h>
@@ -47,6 +48,7 @@ class ViewControls {
 
  private:
   const Scene scene_;
+  const SceneDrawing drawing_;
   FrameSource& source_;
   std::shared_ptr<const Snapshot> snapshot_;
   SourceStatus status_;

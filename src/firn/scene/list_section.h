@@ -2,7 +2,6 @@
 
 #include <firn/scene/schema.h>
 
-#include <string_view>
 #include <vector>
 
 namespace firn {
