@@ -18,7 +18,7 @@ inline std::string scene(const std::string& more, double end_time = 0.2, const s
   return root + "dimension = 2\nprecision = \"double\"\nframe_rate = 20\nresolution.cell_size = 0.02\nend_time = " +
          std::to_string(end_time) +
          "\n[material.liquid]\nmodel = \"newtonian_fluid\"\ndensity = 1000\nbulk_modulus = 2e4\nviscosity = 0.1\n"
-         "tait_exponent = 1\n" +
+         "tait_exponent = 1.01\n" +
          more;
 }
 
