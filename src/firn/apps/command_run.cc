@@ -26,7 +26,7 @@ void print_line(const std::string& line) {
 
 void compute_frames(Simulation& simulation, FrameOutput& output, Progress& progress, RunInfo& info) {
   const auto hand_over = [&](const FrameReport& report) {
-    output.submit({simulation.snapshot(), report, simulation.totals()});
+    output.submit({simulation.snapshot(), report, simulation.totals(), probe_rows(simulation)});
     print_line(progress.line(report));
     info.frames = report.frame;
     info.particles = report.particles;
@@ -72,6 +72,7 @@ void run_scene(const RunOptions& options) {
   if (scene.render.every_nth > 0) print_line(fmt::format("  pictures  {}", folder.images().string()));
   if (output.has_film()) print_line(fmt::format("  film      {}", folder.film().string()));
   print_line(fmt::format("  numbers   {}", folder.stats().string()));
+  if (!scene.probes.empty()) print_line(fmt::format("  probes    {}", folder.probes().string()));
 }
 
 }  // namespace

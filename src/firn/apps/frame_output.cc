@@ -3,6 +3,7 @@
 #include <firn/io/frame_series.h>
 #include <firn/io/frame_writer.h>
 #include <firn/io/stats_table.h>
+#include <firn/scene/probe_points.h>
 #include <firn/scene/resolved.h>
 #include <fmt/format.h>
 
@@ -52,6 +53,12 @@ StatsRow row_of(const FinishedFrame& frame) {
     row.further.push_back(collider.inside.depth);
     row.further.push_back(static_cast<double>(collider.caught));
   }
+  for (const auto* counts : {&frame.report.emitted, &frame.report.removed}) {
+    for (const SourceCount& count : *counts) {
+      row.further.push_back(static_cast<double>(count.particles));
+      row.further.push_back(count.mass);
+    }
+  }
   return row;
 }
 
@@ -63,13 +70,35 @@ std::vector<std::string> further_columns(const Scene& scene) {
       names.push_back(fmt::format("{}.{}", collider.name, column));
     }
   }
+  const auto add = [&](const auto& objects, const char* what) {
+    for (const auto& object : objects) {
+      names.push_back(fmt::format("{}.{}_particles", object.name, what));
+      names.push_back(fmt::format("{}.{}_mass", object.name, what));
+    }
+  };
+  add(scene.emitters, "emitted");
+  add(scene.sinks, "removed");
   return names;
 }
 
 }  // namespace
 
+std::vector<std::vector<ProbeRow>> probe_rows(const Simulation& simulation) {
+  std::vector<std::vector<ProbeRow>> all;
+  for (const ProbeSettings& probe : simulation.scene().probes) {
+    const std::vector<Vec3d> points = probe_points(probe);
+    const std::vector<ProbeValue> values = simulation.probe(points);
+    std::vector<ProbeRow>& rows = all.emplace_back();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      rows.push_back({points[i], values[i].density, values[i].velocity, values[i].pressure});
+    }
+  }
+  return all;
+}
+
 struct FrameOutput::Files {
   StatsTable stats;
+  std::vector<ProbeTable> probes;
   FrameMetadata metadata;
   std::vector<SeriesFrame> series = {};
 };
@@ -78,7 +107,8 @@ FrameOutput::FrameOutput(const Scene& scene, const RunFolder& folder)
     : scene_(scene),
       drawing_(scene_),
       folder_(folder),
-      files_(new Files{StatsTable(folder.stats(), further_columns(scene_)), metadata_of(scene)}) {
+      files_(new Files{StatsTable(folder.stats(), further_columns(scene_)), {}, metadata_of(scene)}) {
+  for (const ProbeSettings& probe : scene.probes) files_->probes.emplace_back(folder.probe(probe.name));
   if (scene.render.film && scene.render.every_nth > 0) {
     if (program_exists("ffmpeg")) {
       film_ = std::make_unique<Film>(folder.film(), scene.render.width, scene.render.height,
@@ -152,6 +182,9 @@ void FrameOutput::write(const FinishedFrame& frame) {
   files_->series.push_back({name, frame.snapshot.time});
   write_frame_series(folder_.particles() / kFrameSeriesName, files_->series);
   files_->stats.append(row_of(frame));
+  for (std::size_t i = 0; i < files_->probes.size(); ++i) {
+    files_->probes[i].append(frame.report.frame, frame.report.time, frame.probes[i]);
+  }
 }
 
 void FrameOutput::draw(const FinishedFrame& frame) {

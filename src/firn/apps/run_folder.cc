@@ -15,7 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> results_of(const RunFolder& folder) {
-  return {folder.particles(), folder.images(), folder.film(), folder.stats(), folder.scene(), folder.run_info()};
+  return {folder.particles(), folder.images(), folder.film(),    folder.stats(),
+          folder.probes(),    folder.scene(),  folder.run_info()};
 }
 
 void make_folder(const fs::path& path) {
@@ -48,6 +49,7 @@ RunFolder prepare_run_folder(const Scene& scene, bool force) {
   }
   make_folder(folder.particles());
   if (scene.render.every_nth > 0) make_folder(folder.images());
+  if (!scene.probes.empty()) make_folder(folder.probes());
   write_file_atomically(folder.scene(), resolved_toml(scene, folder.root));
   return folder;
 }

@@ -135,6 +135,13 @@ View SceneDrawing::view_at(double t) const {
   for (const BodySettings& body : scene.bodies) {
     if (body.color) view.body_colors[body.name] = drawn_color(body.color);
   }
+  for (const EmitterSettings& emitter : scene.emitters) {
+    if (emitter.color) view.body_colors[emitter.name] = drawn_color(emitter.color);
+    if (!emitter.shape) continue;
+    const double radius = emitter.scale * std::max(emitter.radius, 0.5 * norm(emitter.size));
+    if (emitter.keyframes.empty()) view.expected.emplace_back(emitter.position, radius);
+    for (const KeyframeSettings& frame : emitter.keyframes) view.expected.emplace_back(*frame.position, radius);
+  }
   for (const Drawn& drawn : colliders_) {
     const Pose<3> pose = drawn.pose_at(t);
     if (drawn.deforming && drawn.form_time != t) {

@@ -33,6 +33,8 @@ struct Collider {
   double thickness = std::numeric_limits<double>::infinity();
   /// Instead of `shape`, which then is its form at the start; may be null. Moves with the frame.
   std::shared_ptr<const DeformingShape<dim>> deforming = {};
+  /// Whether material may be inside: a pin. What keeps particles out of solids must leave these alone.
+  bool is_filled = false;
 
   Pose<dim> pose_at(double t) const { return keyframes ? keyframes->pose_at(t) : motion.pose_at(t); }
 };

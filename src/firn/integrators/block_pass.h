@@ -260,7 +260,9 @@ void evaluate_body_force(const World<Real, dim>& world, const ParticleColumns<Re
   for (std::uint32_t p = 0; p < count; ++p) {
     if (columns.cell[p] == kNoCell) continue;
     const auto x = position_in_block<Real, dim>(columns, p, origin, world.grid.dx(), world.grid.kernel());
-    const auto a = world.body_force(x, columns.id[p], t);
+    Vec<double, dim> v;
+    for (int i = 0; i < dim; ++i) v[i] = columns.velocity[i][p];
+    const auto a = world.body_force(x, v, columns.id[p], t);
     for (int i = 0; i < dim; ++i) columns.acceleration[i][p] = static_cast<Real>(a[i]);
   }
 }

@@ -27,6 +27,7 @@ bool ParticleContact<Real, dim>::apply(MovingParticle<dim>& particle, std::vecto
   for (const Near* collider : colliders_) {
     const double distance = collider->before.shape().distance(collider->before.to_frame(particle.x));
     inside = inside || distance < 0;
+    if (collider->after.collider().is_filled) continue;
     near = near || in_reach(distance, collider->moves() ? collider->after.to_frame(target) - collider->start(particle.x)
                                                         : dt_ * particle.u);
   }
@@ -69,6 +70,7 @@ auto ParticleContact<Real, dim>::first_collision(const Vec<double, dim>& x, cons
     -> std::optional<Collision> {
   std::optional<Collision> first;
   for (const Near* near : colliders_) {
+    if (near->after.collider().is_filled) continue;
     const Vec<double, dim> from = near->start(x), to = near->after.to_frame(target);
     const Shape<dim>& shape = near->after.shape();
     if (!in_reach(shape.distance(from), to - from)) continue;

@@ -36,7 +36,9 @@ void evaluate_body_force(World<Real, dim>& world) {
     auto& particles = material.particles;
     for (std::size_t p = 0; p < particles.size(); ++p) {
       const auto x = particles.position(p, world.grid.dx(), world.grid.kernel());
-      const auto b = world.body_force(x, particles.id()[p], world.t);
+      Vec<double, dim> v;
+      for (int i = 0; i < dim; ++i) v[i] = particles.real(Field::velocity, i)[p];
+      const auto b = world.body_force(x, v, particles.id()[p], world.t);
       for (int i = 0; i < dim; ++i) particles.real(Field::acceleration, i)[p] = static_cast<Real>(b[i]);
     }
   }

@@ -28,7 +28,7 @@ class ThinColliders {
   ThinColliders(const std::vector<Collider<dim>>& colliders, double t, double dx, Kernel kernel)
       : dx_(dx), kernel_(kernel) {
     for (std::size_t k = 0; k < colliders.size(); ++k) {
-      if (colliders[k].thickness < thin_limit(kernel, dx)) thin_.push_back({k, {colliders[k], t}});
+      if (!colliders[k].is_filled && colliders[k].thickness < thin_limit(kernel, dx)) thin_.push_back({k, {colliders[k], t}});
     }
   }
 

@@ -14,6 +14,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace firn {
@@ -46,10 +48,32 @@ struct MaterialSet {
   std::vector<std::int32_t> block_at = {};
 };
 
-/// Acceleration at world position x of the particle with this id at time t, m/s^2. Called from several threads; must
-/// not start parallel work of its own.
+/// Acceleration of a particle, m/s^2: a function of its world position x (m), id and the time t (s), or of its
+/// position, velocity v (m/s), id and the time. Called from several threads; must not start parallel work of its own.
 template <int dim>
-using BodyForce = std::function<Vec<double, dim>(const Vec<double, dim>& x, std::uint32_t id, double t)>;
+class BodyForce {
+ public:
+  using Vector = Vec<double, dim>;
+
+  BodyForce() = default;
+  template <class Force>
+  requires(!std::is_same_v<Force, BodyForce> && std::is_invocable_v<const Force&, const Vector&, std::uint32_t, double>)
+      BodyForce(Force force)
+      : force_([force = std::move(force)](const Vector& x, const Vector&, std::uint32_t id, double t) {
+          return force(x, id, t);
+        }) {}
+  template <class Force>
+  requires(!std::is_same_v<Force, BodyForce> &&
+           std::is_invocable_v<const Force&, const Vector&, const Vector&, std::uint32_t, double>)
+      BodyForce(Force force)
+      : force_(std::move(force)) {}
+
+  explicit operator bool() const { return static_cast<bool>(force_); }
+  Vector operator()(const Vector& x, const Vector& v, std::uint32_t id, double t) const { return force_(x, v, id, t); }
+
+ private:
+  std::function<Vector(const Vector&, const Vector&, std::uint32_t, double)> force_;
+};
 
 /// Everything that a step reads and writes.
 template <class Real, int dim>

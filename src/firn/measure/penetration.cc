@@ -19,7 +19,7 @@ Penetration& Penetration::operator+=(const Penetration& other) {
 
 template <class Real, int dim>
 std::vector<Penetration> measure_penetration(const Particles<Real, dim>& particles, double dx, Kernel kernel,
-                                             const std::vector<Collider<dim>>& colliders, double t) {
+                                             std::span<const Collider<dim>> colliders, double t) {
   std::vector<PosedCollider<dim>> posed;
   for (const Collider<dim>& collider : colliders) posed.emplace_back(collider, t);
   using Parts = std::vector<Penetration>;
@@ -43,7 +43,7 @@ std::vector<Penetration> measure_penetration(const Particles<Real, dim>& particl
 
 #define FIRN_INSTANTIATE(Real, dim)                                                                             \
   template std::vector<Penetration> measure_penetration<Real, dim>(const Particles<Real, dim>&, double, Kernel, \
-                                                                   const std::vector<Collider<dim>>&, double);
+                                                                   std::span<const Collider<dim>>, double);
 FIRN_INSTANTIATE(float, 2)
 FIRN_INSTANTIATE(float, 3)
 FIRN_INSTANTIATE(double, 2)

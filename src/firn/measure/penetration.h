@@ -4,6 +4,7 @@
 #include <firn/state/particles.h>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace firn {
@@ -20,6 +21,6 @@ struct Penetration {
 /// are in the first period.
 template <class Real, int dim>
 std::vector<Penetration> measure_penetration(const Particles<Real, dim>& particles, double dx, Kernel kernel,
-                                             const std::vector<Collider<dim>>& colliders, double t);
+                                             std::span<const Collider<dim>> colliders, double t);
 
 }  // namespace firn

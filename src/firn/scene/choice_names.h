@@ -65,4 +65,13 @@ struct ChoiceNames<ColliderSettings::Contact> {
   static constexpr std::string_view list[] = {"sticky", "slip", "separate"};
 };
 
+template <>
+struct ChoiceNames<FieldSettings::Type> {
+  static constexpr std::string_view list[] = {"acceleration", "attractor", "vortex", "wind"};
+};
+template <>
+struct ChoiceNames<ProbeSettings::Shape> {
+  static constexpr std::string_view list[] = {"point", "line", "plane"};
+};
+
 }  // namespace firn

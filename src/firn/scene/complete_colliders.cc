@@ -1,6 +1,6 @@
+#include <firn/scene/complete_objects.h>
 #include <firn/scene/deforming_collider.h>
 #include <firn/scene/nearest.h>
-#include <firn/scene/scene_draft.h>
 #include <firn/scene/value_text.h>
 
 #include <fmt/format.h>
@@ -49,6 +49,8 @@ void check_parts(const SceneDraft& draft, std::string_view section, std::size_t 
         fmt::format("no [[part]] has the name {}{}", in_quotes(part), names.empty() ? "" : suggestion(part, names)));
   }
 }
+
+}  // namespace
 
 void complete_shape(SceneDraft& draft, std::string_view section, std::size_t i, ShapeSettings& shape,
                     std::size_t earlier) {
@@ -114,17 +116,25 @@ void check_sequence(const SceneDraft& draft, std::size_t i, const ColliderSettin
   }
 }
 
-void complete_keyframes(const SceneDraft& draft, std::size_t i, ColliderSettings& collider) {
+void complete_keyframes(const SceneDraft& draft, std::string_view section, std::size_t i, const Vec3d& position,
+                        const Vec3d& rotation, std::vector<KeyframeSettings>& keyframes) {
+  const auto given = [&](std::string_view key) { return draft.has(section, i, key); };
+  if (given("keyframes") && given("trajectory")) {
+    draft.fail(section, i, "trajectory", "keyframes and trajectory exclude each other; keep one");
+  }
+  if (given("keyframes") && keyframes.empty()) {
+    draft.fail(section, i, "keyframes", "keyframes must have at least one entry");
+  }
   const auto fail = [&](std::size_t k, const std::string& what) {
-    draft.fail("collider", i, "keyframes", fmt::format("keyframes: entry {}: {}", k + 1, what));
+    draft.fail(section, i, "keyframes", fmt::format("keyframes: entry {}: {}", k + 1, what));
   };
-  for (std::size_t k = 0; k < collider.keyframes.size(); ++k) {
-    KeyframeSettings& frame = collider.keyframes[k];
-    if (!frame.position) frame.position = collider.position;
-    if (!frame.rotation) frame.rotation = collider.rotation;
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    KeyframeSettings& frame = keyframes[k];
+    if (!frame.position) frame.position = position;
+    if (!frame.rotation) frame.rotation = rotation;
     if (!frame.scale) frame.scale = 1;
     if (k == 0) continue;
-    const KeyframeSettings& last = collider.keyframes[k - 1];
+    const KeyframeSettings& last = keyframes[k - 1];
     if (!(last.time < frame.time)) {
       fail(k, fmt::format("times must increase, got {} s after {} s", number_text(frame.time), number_text(last.time)));
     }
@@ -139,26 +149,18 @@ void complete_keyframes(const SceneDraft& draft, std::size_t i, ColliderSettings
   }
 }
 
-void complete_motion(const SceneDraft& draft, std::size_t i, ColliderSettings& collider) {
-  const bool framed = draft.has("collider", i, "keyframes") || draft.has("collider", i, "trajectory");
-  const auto given = [&](std::string_view key) { return draft.has("collider", i, key); };
-  if (given("keyframes") && given("trajectory")) {
-    draft.fail("collider", i, "trajectory", "keyframes and trajectory exclude each other; keep one");
-  }
+void complete_motion(const SceneDraft& draft, std::string_view section, std::size_t i, ColliderSettings& collider) {
+  complete_keyframes(draft, section, i, collider.position, collider.rotation, collider.keyframes);
+  const auto given = [&](std::string_view key) { return draft.has(section, i, key); };
+  const bool framed = given("keyframes") || given("trajectory");
   for (const std::string_view key : {"velocity", "angular_velocity"}) {
     const Vec3d& value = key == "velocity" ? collider.velocity : collider.angular_velocity;
     if (framed && given(key) && norm(value) > 0) {
-      draft.fail("collider", i, key, fmt::format("{} excludes keyframes and trajectory; keep one", key));
+      draft.fail(section, i, key, fmt::format("{} excludes keyframes and trajectory; keep one", key));
     }
   }
-  if (given("keyframes") && collider.keyframes.empty()) {
-    draft.fail("collider", i, "keyframes", "keyframes must have at least one entry");
-  }
-  complete_keyframes(draft, i, collider);
-  if (!collider.trajectory.empty()) check_file(draft, "collider", i, "trajectory", collider.trajectory);
+  if (!collider.trajectory.empty()) check_file(draft, section, i, "trajectory", collider.trajectory);
 }
-
-}  // namespace
 
 void complete_colliders(SceneDraft& draft) {
   Scene& scene = draft.scene;
@@ -171,7 +173,7 @@ void complete_colliders(SceneDraft& draft) {
   for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
     complete_shape(draft, "collider", i, scene.colliders[i], scene.parts.size());
     check_sequence(draft, i, scene.colliders[i]);
-    complete_motion(draft, i, scene.colliders[i]);
+    complete_motion(draft, "collider", i, scene.colliders[i]);
   }
 }
 

@@ -37,6 +37,8 @@ class ValueReader {
         return integer();
       case ValueType::vector:
         return padded(list(node_, static_cast<std::size_t>(dimension_)));
+      case ValueType::formula:
+        return std::vector<NumberOrFormula>{number_or_formula(node_)};
       case ValueType::formulas:
         return formulas();
       case ValueType::vector3:

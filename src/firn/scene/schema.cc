@@ -83,6 +83,8 @@ std::string type_text(const Key& key, int dimension) {
       return "one of " + quoted_list(key.choices);
     case ValueType::vector:
       return dimension == 0 ? "a list of 3 numbers (2 in a 2D scene)" : fmt::format("a list of {} numbers", dimension);
+    case ValueType::formula:
+      return "a number or a formula in quotes";
     case ValueType::formulas:
       return dimension == 0 ? "a list of 3 numbers or formulas in quotes (2 in a 2D scene)"
                             : fmt::format("a list of {} numbers or formulas in quotes", dimension);

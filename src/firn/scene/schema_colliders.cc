@@ -7,9 +7,9 @@ namespace {
 
 using K = KeyBuilder;
 
-/// A field of ShapeSettings as one of the object's own, which is what a key is for.
-template <class Settings, class Field>
-Field Settings::*of(Field ShapeSettings::*member) {
+/// A field of a base as one of the object's own, which is what a key is for.
+template <class Settings, class Base, class Field>
+Field Settings::*of(Field Base::*member) {
   return member;
 }
 
@@ -140,32 +140,33 @@ std::vector<Key> sequence_keys() {
   };
 }
 
-std::vector<Key> collider_motion_keys() {
+template <class Settings>
+std::vector<Key> motion_keys() {
   return {
-      K("position", of<ColliderSettings>(&ShapeSettings::position))
+      K("position", of<Settings>(&ShapeSettings::position))
           .unit("m")
           .help("Centre at t = 0, or a point on the half space's plane; where the file's origin goes."),
-      K("rotation", of<ColliderSettings>(&ShapeSettings::rotation))
+      K("rotation", of<Settings>(&ShapeSettings::rotation))
           .type(ValueType::rotation)
           .unit("degrees")
           .help("At t = 0, about the fixed axes x, then y, then z; one angle in 2D."),
-      K("velocity", &ColliderSettings::velocity).unit("m/s").help("Constant."),
-      K("angular_velocity", &ColliderSettings::angular_velocity)
+      K("velocity", of<Settings>(&ColliderSettings::velocity)).unit("m/s").help("Constant."),
+      K("angular_velocity", of<Settings>(&ColliderSettings::angular_velocity))
           .type(ValueType::rotation)
           .unit("rad/s")
           .help("Constant, about `position`."),
-      K("keyframes", &ColliderSettings::keyframes)
+      K("keyframes", of<Settings>(&ColliderSettings::keyframes))
           .default_text("none")
           .help("Motion, instead of a velocity: { time = s, position = m, rotation = degrees, scale = factor } each; "
                 "what "
                 "is left out is `position`, `rotation` and 1. At rest before the first and after the last."),
-      K("trajectory", &ColliderSettings::trajectory)
+      K("trajectory", of<Settings>(&ColliderSettings::trajectory))
           .path()
           .default_text("none")
           .help("Motion from a text file: rows of time (s), position (m) and, if given, rotation (degrees): t, x, y, "
                 "z, rx, "
                 "ry, rz; in 2D t, x, y, angle. The path starts at the scene file's folder."),
-      K("interpolation", &ColliderSettings::interpolation)
+      K("interpolation", of<Settings>(&ColliderSettings::interpolation))
           .help("Between keyframes, rows or meshes of a sequence: linear: constant velocities; smooth: continuous "
                 "velocities, at rest at both ends. Rotations go the shortest way."),
   };
@@ -196,7 +197,7 @@ Section make_collider_section() {
                                               "NAME.inside and NAME.depth (particles inside, and the deepest, m), "
                                               "NAME.caught (times that another collider held a particle inside).");
   section.keys.front().decides_result = false;
-  for (const auto& added : {sequence_keys(), collider_motion_keys()}) {
+  for (const auto& added : {sequence_keys(), motion_keys<ColliderSettings>()}) {
     section.keys.insert(section.keys.end(), added.begin(), added.end());
   }
   const std::vector<Key> more = {
@@ -218,6 +219,27 @@ Section make_collider_section() {
           .presentation()
           .help("In pictures and the viewer: solid; glass: clear, mirrors the sky and casts no shadow; hidden: not "
                 "drawn."),
+  };
+  section.keys.insert(section.keys.end(), more.begin(), more.end());
+  return section;
+}
+
+Section make_pin_section() {
+  Section section = list_section("pin", &Scene::pins,
+                                 "A region that holds the material inside, or carries it along; one [[pin]] each.");
+  section.keys = shape_keys<PinSettings>("pin<index>", "Names the pin.");
+  section.keys.front().decides_result = false;
+  const std::vector<Key> motion = motion_keys<PinSettings>();
+  section.keys.insert(section.keys.end(), motion.begin(), motion.end());
+  const std::vector<Key> more = {
+      K("moves_with", &PinSettings::moves_with)
+          .default_text("none")
+          .help("Name of a [[collider]] that carries it along; `position` and `rotation` are those at t = 0."),
+      K("start", &PinSettings::start)
+          .unit("s")
+          .at_least(0)
+          .help("When it begins to act; a constant velocity begins then too, at `position`."),
+      K("stop", &PinSettings::stop).unit("s").above(0).default_text("never").help("When it ends."),
   };
   section.keys.insert(section.keys.end(), more.begin(), more.end());
   return section;

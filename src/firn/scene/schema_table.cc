@@ -211,6 +211,12 @@ std::vector<Section> make_schema() {
           make_body_section(),
           make_part_section(),
           make_collider_section(),
+          make_emitter_section(),
+          make_sink_section(),
+          make_field_section(),
+          make_pin_section(),
+          make_traction_section(),
+          make_probe_section(),
           camera(),
           render(),
           output()};

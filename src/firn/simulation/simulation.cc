@@ -7,6 +7,7 @@
 #include <firn/scene/vary_parameters.h>
 #include <firn/simulation/runaways.h>
 #include <firn/simulation/simulation.h>
+#include <firn/simulation/sources.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <tbb/global_control.h>
@@ -18,6 +19,7 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -47,12 +49,16 @@ class SimulationOf final : public Simulation {
     limits_.elastic_cfl = scene.limits.elastic_cfl;
     if (scene.limits.max_dt) limits_.max_dt = *scene.limits.max_dt;
     for (const auto& material : world_->materials) material_names_.push_back(material.name);
+    sources_ = std::make_unique<Sources<Real, dim>>(scene_, plan_, *world_);
     StepReport prepared;
-    arena_.execute([&] { prepared = prepare(*world_); });
+    arena_.execute([&] {
+      prepared = prepare(*world_);
+      if (!prepared.failure) sources_->act(*world_);
+    });
     if (prepared.failure) fail(*prepared.failure, 0);
-    report_.particles = particle_count();
     report_.limit = "start";
     report_.colliders = collider_reports(0);
+    note_particles();
   }
 
   double time() const override { return world_->t; }
@@ -65,9 +71,12 @@ class SimulationOf final : public Simulation {
     TimeStep taken;
     std::optional<ParticleFailure> failure;
     arena_.execute([&] {
-      taken = choose_time_step(*world_, limits_, until - world_->t);
+      sources_->set_pins(*world_);
+      taken = choose_step(world_->t, until);
       failure = step_explicit(*world_, taken.dt).failure;
-      if (!failure) guard_.park_fast(*world_);
+      if (failure) return;
+      guard_.park_fast(*world_);
+      sources_->act(*world_);
     });
     if (failure) fail(*failure, taken.dt);
     return taken;
@@ -101,7 +110,8 @@ class SimulationOf final : public Simulation {
     snapshot.time = world_->t;
     snapshot.cell_size = world_->grid.dx();
     for (const BodySettings& body : scene_.bodies) snapshot.bodies.push_back(body.name);
-    double smallest = 0;
+    for (const EmitterSettings& emitter : scene_.emitters) snapshot.bodies.push_back(emitter.name);
+    double smallest = scene_.emitters.empty() ? 0 : plan_.particle_volume;
     for (const WorldPlan::Body& body : plan_.bodies) {
       const double each = body.volume / static_cast<double>(body.particles);
       smallest = smallest == 0 ? each : std::min(smallest, each);
@@ -132,6 +142,21 @@ class SimulationOf final : public Simulation {
     return sum;
   }
 
+  std::vector<ProbeValue> probe(std::span<const Vec3d> points) const override {
+    std::vector<Vec<double, dim>> places(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) std::copy_n(points[i].e, dim, places[i].e);
+    std::vector<ProbeSums> sums(points.size());
+    arena_.execute([&] {
+      for (const auto& material : world_->materials) {
+        add_to_probes<Real, dim>(places, material.particles, material.model, material.parameters, world_->grid.dx(),
+                                 world_->transfer.kernel, world_->grid.period(), sums);
+      }
+    });
+    std::vector<ProbeValue> values;
+    for (const ProbeSums& sum : sums) values.push_back(probe_value(sum, world_->grid.dx(), dim));
+    return values;
+  }
+
   std::uint64_t hash() const override {
     const std::uint64_t clock[2] = {world_->steps, static_cast<std::uint64_t>(frame_)};
     std::uint64_t hash = XXH64(clock, sizeof(clock), XXH64(&world_->t, sizeof(world_->t), 1));
@@ -150,6 +175,7 @@ class SimulationOf final : public Simulation {
     double t, max_speed, max_collider_speed;
     std::uint64_t steps;
     std::int64_t parked;
+    typename Sources<Real, dim>::Counts counts;
     FrameReport report;
   };
 
@@ -165,6 +191,7 @@ class SimulationOf final : public Simulation {
     kept_->max_collider_speed = world_->max_collider_speed;
     kept_->steps = world_->steps;
     kept_->parked = guard_.parked();
+    kept_->counts = sources_->counts();
     kept_->report = report_;
   }
 
@@ -184,6 +211,7 @@ class SimulationOf final : public Simulation {
     arena_.execute([&] { activate_blocks(*world_); });
     world_->steps = kept_->steps;
     guard_.restore(kept_->parked);
+    sources_->restore(kept_->counts);
   }
 
   void retry(const ParticleFailure& failure) {
@@ -205,15 +233,33 @@ class SimulationOf final : public Simulation {
     ++frame_;
     report_.frame = frame_;
     report_.time = world_->t;
-    report_.particles = particle_count();
-    report_.parked = guard_.parked();
     report_.colliders = collider_reports(world_->t - start);
+    note_particles();
     return std::nullopt;
   }
 
+  void note_particles() {
+    report_.particles = particle_count();
+    report_.parked = guard_.parked();
+    report_.emitted = sources_->counts().emitted;
+    report_.removed = sources_->counts().removed;
+  }
+
+  /// How long a step from time t is, of those that lead to the next event or to the end of the frame.
+  TimeStep choose_step(double t, double until) const {
+    const auto bound = sources_->longest_step(*world_, t, limits_.particle_cfl);
+    TimeStepLimits limits = limits_;
+    limits.max_dt = std::min(limits_.max_dt, bound.dt);
+    TimeStep step = choose_time_step(*world_, limits, std::min(until, sources_->next_event(t)) - t);
+    if (step.limit == "max_dt" && bound.dt < limits_.max_dt) step.limit = bound.limit;
+    return step;
+  }
+
+  /// Of the scene's colliders, behind which the world has its pins.
   /// @param duration how long the loads have been counted, s; 0 for not at all
   std::vector<ColliderReport> collider_reports(double duration) const {
-    std::vector<ColliderReport> reports(world_->colliders.size());
+    const auto solids = std::span<const Collider<dim>>(world_->colliders).first(scene_.colliders.size());
+    std::vector<ColliderReport> reports(solids.size());
     for (std::size_t k = 0; k < reports.size() && duration > 0; ++k) {
       const ColliderLoad& load = world_->collider_loads[k];
       reports[k].force = (1 / duration) * load.impulse;
@@ -223,7 +269,7 @@ class SimulationOf final : public Simulation {
     arena_.execute([&] {
       for (const auto& material : world_->materials) {
         const auto inside = measure_penetration<Real, dim>(material.particles, world_->grid.dx(),
-                                                           world_->transfer.kernel, world_->colliders, world_->t);
+                                                           world_->transfer.kernel, solids, world_->t);
         for (std::size_t k = 0; k < reports.size(); ++k) reports[k].inside += inside[k];
       }
     });
@@ -233,16 +279,18 @@ class SimulationOf final : public Simulation {
   std::optional<ParticleFailure> try_steps(double until) {
     report_ = {};
     report_.dt = std::numeric_limits<double>::infinity();
-    TimeStep next = choose_time_step(*world_, limits_, until - world_->t);
+    TimeStep next = choose_step(world_->t, until);
     while (world_->t < until) {
       const TimeStep taken = next;
       bool drained = false;
+      sources_->set_pins(*world_);
       const StepReport step = step_explicit(*world_, taken.dt, [&] {
         // What is left behind the last step of a frame is round-off.
         const double remaining = until - (world_->t + taken.dt);
-        drained = remaining < 1e-9 * taken.dt || guard_.may_park(*world_);
+        const bool due = sources_->due(*world_, taken.dt);
+        drained = remaining < 1e-9 * taken.dt || guard_.may_park(*world_) || due;
         if (drained) return 0.0;
-        next = choose_time_step(*world_, limits_, remaining);
+        next = choose_step(world_->t + taken.dt, until);
         drained = !(next.dt > 0);
         return next.dt;
       });
@@ -251,11 +299,10 @@ class SimulationOf final : public Simulation {
       if (!drained) continue;
       guard_.park_fast(*world_);
       // The last step of a frame lands on its time.
-      if (until - world_->t < 1e-9 * taken.dt) {
-        world_->t = until;
-      } else {
-        next = choose_time_step(*world_, limits_, until - world_->t);
-      }
+      const bool is_last = until - world_->t < 1e-9 * taken.dt;
+      if (is_last) world_->t = until;
+      sources_->act(*world_);
+      if (!is_last) next = choose_step(world_->t, until);
     }
     return std::nullopt;
   }
@@ -292,6 +339,7 @@ class SimulationOf final : public Simulation {
   mutable tbb::task_arena arena_;
   std::optional<tbb::global_control> thread_limit_;
   std::unique_ptr<World<Real, dim>> world_;
+  std::unique_ptr<Sources<Real, dim>> sources_;
   TimeStepLimits limits_;
   RunawayGuard<Real, dim> guard_;
   std::vector<std::string> material_names_;

@@ -2,13 +2,16 @@
 
 #include <firn/integrators/time_step.h>
 #include <firn/measure/penetration.h>
+#include <firn/measure/probe.h>
 #include <firn/measure/totals.h>
 #include <firn/scene/build_world.h>
 #include <firn/scene/settings.h>
+#include <firn/simulation/source_count.h>
 #include <firn/state/snapshot.h>
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,6 +37,7 @@ struct FrameReport {
   int retries = 0;          ///< times that the frame was taken back and computed with smaller steps
   double wall_seconds = 0;
   std::vector<ColliderReport> colliders = {};  ///< in the order of the scene
+  std::vector<SourceCount> emitted = {}, removed = {};  ///< by each emitter and each sink
 };
 
 /// A scene being simulated, whatever its dimension and precision: the one face of the library that the command line,
@@ -70,6 +74,9 @@ class Simulation {
 
   virtual Snapshot snapshot() const = 0;
   virtual Totals totals() const = 0;
+
+  /// Density, velocity and pressure at these points, m.
+  virtual std::vector<ProbeValue> probe(std::span<const Vec3d> points) const = 0;
 
   /// Seconds spent in each verb of the step since the start.
   virtual VerbTimes verb_times() const = 0;

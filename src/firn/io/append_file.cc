@@ -1,0 +1,36 @@
+#include <fcntl.h>
+#include <firn/core/error.h>
+#include <firn/io/append_file.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace firn {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& path, int reason) {
+  throw Error(ErrorKind::files, fmt::format("{}: cannot add a row: {}{}", path.string(), std::strerror(reason),
+                                            reason == ENOSPC ? "; free some disk space" : ""));
+}
+
+}  // namespace
+
+void append_text(const std::filesystem::path& path, const std::string& text) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (file < 0) fail(path, errno);
+  struct stat before = {};
+  ::fstat(file, &before);
+  const ssize_t written = ::write(file, text.data(), text.size());
+  int reason = 0;
+  if (written != static_cast<ssize_t>(text.size())) {
+    reason = written < 0 ? errno : ENOSPC;
+    if (S_ISREG(before.st_mode) && ::ftruncate(file, before.st_size) != 0) reason = errno;
+  }
+  if (::close(file) != 0 && reason == 0) reason = errno;
+  if (reason != 0) fail(path, reason);
+}
+
+}  // namespace firn
