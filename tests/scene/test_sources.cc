@@ -115,8 +115,8 @@ TEST(SourcesScene, TractionErrorsAreLocated) {
   EXPECT_TRUE(contains(error_of(with(kBall + traction + "pressure = 1\nbody = \"bal\"\n")),
                        "traction \"push\": no [[body]] has the name \"bal\"; did you mean \"ball\"?"));
   const Scene scene = parse(with(kBall + traction + "stress = [0, 3, 4]\n"));
-  EXPECT_EQ(scene.tractions[0].normal[1], 0.6);
-  EXPECT_EQ(scene.tractions[0].normal[2], 0.8);
+  EXPECT_DOUBLE_EQ(scene.tractions[0].normal[1], 0.6);
+  EXPECT_DOUBLE_EQ(scene.tractions[0].normal[2], 0.8);
 }
 
 TEST(SourcesScene, ResolvedSceneReadsBack) {
