@@ -44,8 +44,9 @@ class Belt : public testing::Test {
     int frames = 0;
     while (simulation->frame() < simulation->frame_count()) {
       simulation->advance_frame();
-      if (2 * simulation->frame() < simulation->frame_count()) continue;
       const Totals totals = simulation->totals();
+      std::printf("%d %g\n", int(simulation->frame()), totals.momentum[0] / totals.mass);
+      if (2 * simulation->frame() < simulation->frame_count()) continue;
       for (int i = 0; i < 3; ++i) sum[i] += totals.momentum[i] / totals.mass;
       ++frames;
     }
@@ -90,10 +91,15 @@ TEST_F(Belt, TimeStepsSeeItsSpeed) {
         "shape = \"mesh_sequence\"\nmeshes = \"belt_#.obj\"\nat_end = \"cycle\"\n"
         "contact = \"sticky\"\nfps = " +
         std::to_string(speed / test::belt_link()) + "\n";
-    const auto simulation = Simulation::create(
-        parse_scene(belt_scene(collider), folder_ / "scene.toml", {"material.jelly.youngs_modulus=2000"}));
+    // Single steps go no further than the end of the first frame, which must come later.
+    const auto simulation = Simulation::create(parse_scene(belt_scene(collider), folder_ / "scene.toml",
+                                                           {"material.jelly.youngs_modulus=2000", "frame_rate=10"}));
     double dt = 1;
-    for (int s = 0; s < 3; ++s) dt = std::min(dt, simulation->step().dt);
+    for (int s = 0; s < 3; ++s) {
+      const TimeStep step = simulation->step();
+      std::printf("speed %g dt %g limit %s\n", speed, step.dt, std::string(step.limit).c_str());
+      dt = std::min(dt, step.dt);
+    }
     return dt;
   };
   const double dt = shortest(kFast);
