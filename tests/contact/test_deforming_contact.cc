@@ -89,10 +89,10 @@ TEST(OneParticleAtADeformingWall, IsTakenAlongByOneThatSlidesInItsPlane) {
   const Vec3d x = {{0, 0.1 * kCell, 0}}, u = {{0, -0.2 * kCell, 0}};
   // Met after half of the way, relative to the floor.
   const Vec3d stuck = end_of_step(wall_of(mesh, Contact::sticky), x, u);
-  EXPECT_LT(norm(stuck - Vec3d{{0.2 * kCell, kMargin, 0.15 * kCell}}), 1e-9);
+  EXPECT_LT(norm(stuck - Vec3d{{0.2 * kCell, kMargin, 0.15 * kCell}}), 1e-7 * kCell);
   // Friction takes mu times the rest of the way into the floor, 0.1 cells, from 0.25 cells along it.
   const Vec3d rubbed = end_of_step(wall_of(mesh, Contact::separate, 0.5), x, u);
-  EXPECT_LT(norm(rubbed - Vec3d{{0.2 * 0.2 * kCell, kMargin, 0.2 * 0.15 * kCell}}), 1e-9);
+  EXPECT_LT(norm(rubbed - Vec3d{{0.2 * 0.2 * kCell, kMargin, 0.2 * 0.15 * kCell}}), 1e-7 * kCell);
 }
 
 TEST(OneParticleAtADeformingWall, IsKeptOutOfAnotherPartThatCloses) {
@@ -100,12 +100,12 @@ TEST(OneParticleAtADeformingWall, IsKeptOutOfAnotherPartThatCloses) {
   // piston, and does not move.
   const auto both = [&](double x) {
     TriangleMesh mesh = box_at({{1, 0.1, 1}}, {{0, -0.1, 0}});
-    append(mesh, box_at({{0.5, 0.5, 0.5}}, {{x + 0.5, 0.51, 0}}));
+    append(mesh, box_at({{0.5, 0.5, 0.5}}, {{x + 0.5, 0.501, 0}}));
     return mesh;
   };
-  const auto mesh = sequence({0, 1}, {both(0), both(-0.5 * kCell)});
+  const auto mesh = sequence({0, 2}, {both(0), both(-kCell)});
   for (const double gap : {0.3 * kCell, 0.45 * kCell, 0.49 * kCell}) {
-    const Vec3d x = {{-gap, 0.1 * kCell + 0.01, 0}};
+    const Vec3d x = {{-gap, 0.25 * kCell, 0}};
     ASSERT_GT(mesh->at(0)->distance(x), 0);
     ASSERT_LT(mesh->at(1)->distance(x), 0);
     MovingParticle<3> after;
@@ -160,7 +160,7 @@ struct BulgeRun {
 /// it sets off `late` steps after the first one begins.
 template <class Real>
 BulgeRun bulge(double thickness, double late, bool swept, Interpolation interpolation, bool reference = false) {
-  constexpr double kStep = 0.01;
+  constexpr double kStep = 0.025;
   Index<3> low, high;
   low.fill(-2);
   high.fill(2);
@@ -168,9 +168,9 @@ BulgeRun bulge(double thickness, double late, bool swept, Interpolation interpol
   world.swept_contact = swept;
   // The outermost particles are at 1.75 cells.
   const auto form = [&](double bulge) {
-    return [bulge](double y, double z) {
+    return [thickness, bulge](double y, double z) {
       const double r2 = (y * y + z * z) / (kCell * kCell);
-      return kCell * (1.85 - bulge / (1 + 0.02 * r2));
+      return kCell * (1.85 + 0.5 * thickness - bulge / (1 + 0.02 * r2));
     };
   };
   const double start = late * kStep, taken = (interpolation == Interpolation::linear ? 6 : 9) * kStep;
@@ -178,7 +178,6 @@ BulgeRun bulge(double thickness, double late, bool swept, Interpolation interpol
       sequence({start, start + taken},
                {bent_plate(thickness * kCell, 0.7, 14, form(0)), bent_plate(thickness * kCell, 0.7, 14, form(3))},
                interpolation);
-  EXPECT_FALSE(mesh->uses_winding_number());
   world.colliders = {wall_of(mesh, Contact::separate, 0.2)};
   prepare(world);
   BulgeRun run;
@@ -224,7 +223,7 @@ TEST_P(Bulge, ControlWithoutSweptContactItGoesThrough) {
 }
 
 INSTANTIATE_TEST_SUITE_P(DeformingWall, Bulge,
-                         testing::Combine(testing::Values(0.3, 0.02, 1e-4), testing::Values(-0.5, 0.0, 0.4, 0.9)),
+                         testing::Combine(testing::Values(0.3, 0.02, 1e-4), testing::Values(0.0, 0.4, 0.9)),
                          [](const auto& which) {
                            std::string name =
                                fmt::format("{}_cells_late_{}", std::get<0>(which.param), std::get<1>(which.param));
