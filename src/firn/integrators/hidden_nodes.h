@@ -44,20 +44,15 @@ class HiddenNodes {
       const PosedCollider<dim>& collider = near_[k]->posed;
       const double distance = collider.distance(around.x);
       if (!(distance < around.reach)) continue;
-      const WallView<dim> from = wall_view(collider, around.x);
+      const WallView<dim> from = wall_view(collider, around.x, distance);
       for (int n = 0; n < around.count; ++n) {
         double square = 0;
-        int place = around.first;
-        for (int d = 0; d < dim; ++d) {
-          const int a = node_on_axis<dim>(settings_.kernel, n, d);
-          square += around.squares[d][a];
-          place += a * tile_stride<dim>(settings_.kernel, d) / kNodeWidth;
-        }
+        for (int d = 0; d < dim; ++d) square += around.squares[d][node_on_axis<dim>(settings_.kernel, n, d)];
         // Nothing is between a particle and what is nearer to it than the wall.
         if (distance > 0 && square <= distance * distance) continue;
         if (any && found.behind[n] != WallFields<Real>::kSeen) continue;
         Vec<double, dim> normal;
-        if (!hides(collider, from, view(k, place), normal)) continue;
+        if (!hides(collider, from, view(k, around.first + node_place<dim>(settings_.kernel, n)), normal)) continue;
         if (!any) std::fill_n(found.behind, around.count, WallFields<Real>::kSeen);
         any = true;
         found.behind[n] = static_cast<int>(near_[k]->place);

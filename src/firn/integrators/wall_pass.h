@@ -7,6 +7,8 @@
 #include <firn/transfer/scatter.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -20,12 +22,21 @@ void scatter_partly_hidden(const World<Real, dim>& world, const ParticleColumns<
   using Walls = WallFields<Real>;
   const ParticleLoad<dim> load(columns, p, world.grid.dx(), dt, world.transfer);
   const std::size_t layer = world.grid.tile_size(), layers = static_cast<std::size_t>(world.grid.layers());
+  // Numbers of fields stay where they are when there are more fields.
+  Real *seen = nullptr, *unseen = nullptr;
+  int unseen_behind = Walls::kSeen;
   for (int n = 0; n < particle.nodes.count; ++n) {
     const double w = particle.nodes.w[n], mass = load.mass(w);
     const auto& r = particle.nodes.r[n];
-    const bool hidden = particle.behind[n] != Walls::kSeen;
-    Real* node = get_field(fields, particle.behind[n], layer * (layers + (hidden ? 1 : 0))).values.data() +
-                 particle.nodes.place[n] * kNodeWidth;
+    const int behind = particle.behind[n];
+    const bool hidden = behind != Walls::kSeen;
+    if (hidden && behind != unseen_behind) {
+      unseen = get_field(fields, behind, layer * (layers + 1)).values.data();
+      unseen_behind = behind;
+    } else if (!hidden && seen == nullptr) {
+      seen = get_field(fields, Walls::kSeen, layer * layers).values.data();
+    }
+    Real* node = (hidden ? unseen : seen) + particle.nodes.place[n] * kNodeWidth;
     const Vec<double, dim> before = load.before(w, r), after = before + load.impulse(w, particle.nodes.grad_w[n], r);
     for (int i = 0; i < dim; ++i) node[i] += static_cast<Real>(after[i]);
     node[kMassSlot] += static_cast<Real>(mass);
@@ -122,7 +133,7 @@ class WallGather {
   }
 
  private:
-  ParticleSums<dim> sum_nodes() const {
+  ParticleSums<dim> sum_nodes() {
     const bool flip = world_.transfer.flip > 0;
     ParticleSums<dim> sums;
     for (int n = 0; n < particle_.nodes.count; ++n) {
@@ -134,38 +145,69 @@ class WallGather {
           node_change = behind + kBlockNodes<dim> * kNodeWidth;
         }
       }
-      Vec<double, dim> v, dv = {};
-      for (int i = 0; i < dim; ++i) {
-        v[i] = static_cast<double>(node[i]);
-        if (flip) dv[i] = static_cast<double>(node_change[i]);
-      }
-      sums.add(particle_.nodes.w[n], particle_.nodes.grad_w[n], particle_.nodes.r[n], v, dv);
+      Vec<double, dim> v;
+      for (int i = 0; i < dim; ++i) v[i] = static_cast<double>(node[i]);
+      sums.add(particle_.nodes.w[n], particle_.nodes.r[n], v);
+      if (particle_.nodes.has_gradients) sums.add_gradient(particle_.nodes.grad_w[n], v);
+      if (!flip) continue;
+      Vec<double, dim> change;
+      for (int i = 0; i < dim; ++i) change[i] = static_cast<double>(node_change[i]);
+      sums.add_change(particle_.nodes.w[n], change);
     }
     return sums;
   }
 
   /// The node at this place of the tile as it is behind a collider; null only if colliders were changed since the
   /// particles were scattered.
-  const Real* hidden_node(std::int32_t place, int collider) const {
-    int o = 0, node = 0, unit = 1;
-    for (int d = dim - 1, rest = place; d >= 0; --d, unit *= kBlockSide<dim>) {
-      const Kernel kernel = world_.grid.kernel();
-      const int side = d == dim - 1 ? tile_row<dim>(kernel) : tile_side<dim>(kernel), c = rest % side;
-      rest /= side;
-      if (c >= kBlockSide<dim>) o |= 1 << (dim - 1 - d);
-      node += c % kBlockSide<dim> * unit;
-    }
-    const auto g = static_cast<std::size_t>(world_.grid.node_block_of(b_, o));
-    if (g >= world_.walls.nodes.size()) return nullptr;
-    const WallField<Real>* field = find_field(world_.walls.nodes[g], collider);
-    return field == nullptr ? nullptr : field->values.data() + node * kNodeWidth;
+  const Real* hidden_node(std::int32_t place, int collider) {
+    if (collider != behind_) find_fields_behind(collider);
+    const NodeOfTile& node =
+        kNodesOfTile[static_cast<std::size_t>(world_.grid.kernel())][static_cast<std::size_t>(place)];
+    const Real* field = fields_behind_[node.block];
+    return field == nullptr ? nullptr : field + node.number;
   }
+
+  void find_fields_behind(int collider) {
+    behind_ = collider;
+    for (int o = 0; o < kReach<dim>; ++o) {
+      const auto g = static_cast<std::size_t>(world_.grid.node_block_of(b_, o));
+      const WallField<Real>* field =
+          g < world_.walls.nodes.size() ? find_field(world_.walls.nodes[g], collider) : nullptr;
+      fields_behind_[o] = field == nullptr ? nullptr : field->values.data();
+    }
+  }
+
+  /// Where a node of a tile is in the grid.
+  struct NodeOfTile {
+    std::int16_t block;   ///< which of those that the tile reaches into
+    std::int16_t number;  ///< first of its numbers there
+  };
+  static constexpr auto kNodesOfTile = [] {
+    std::array<std::array<NodeOfTile, tile_nodes<dim>(Kernel::cubic)>, 3> nodes = {};
+    for (int k = 0; k < 3; ++k) {
+      const auto kernel = static_cast<Kernel>(k);
+      for (int place = 0; place < tile_nodes<dim>(kernel); ++place) {
+        int o = 0, node = 0, unit = kNodeWidth;
+        for (int d = dim - 1, rest = place; d >= 0; --d, unit *= kBlockSide<dim>) {
+          const int side = d == dim - 1 ? tile_row<dim>(kernel) : tile_side<dim>(kernel), c = rest % side;
+          rest /= side;
+          if (c >= kBlockSide<dim>) o |= 1 << (dim - 1 - d);
+          node += c % kBlockSide<dim> * unit;
+        }
+        nodes[static_cast<std::size_t>(k)][static_cast<std::size_t>(place)] = {static_cast<std::int16_t>(o),
+                                                                               static_cast<std::int16_t>(node)};
+      }
+    }
+    return nodes;
+  }();
 
   const World<Real, dim>& world_;
   std::size_t b_;
   HiddenNodes<Real, dim> hidden_;
   const Real *velocity_, *change_;
   PartlyHidden<dim> particle_;
+  int behind_ = WallFields<Real>::kSeen;         ///< the collider of fields_behind_; kSeen for none yet
+  const Real* fields_behind_[kReach<dim>] = {};  ///< in the blocks that the tile reaches into; null where there is none
 };
 
 }  // namespace firn

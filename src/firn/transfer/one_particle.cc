@@ -47,16 +47,25 @@ void find_nodes(const ParticleColumns<Real, dim>& particles, std::uint32_t p, do
     axes[d] = axis_of(kernel, static_cast<double>(particles.offset[d][p]));
     first += rest % kBlockSide<dim> * tile_stride<dim>(kernel, d) / kNodeWidth;
   }
+  for (int d = 0; d < dim; ++d) {
+    for (double& distance : axes[d].distance) distance *= dx;
+  }
   nodes.count = power(support(kernel), dim);
   for (int n = 0; n < nodes.count; ++n) {
     nodes.w[n] = 1;
-    nodes.grad_w[n] = constant_vector<double, dim>(inv_dx);
-    nodes.place[n] = first;
+    nodes.place[n] = first + node_place<dim>(kernel, n);
     for (int d = 0; d < dim; ++d) {
       const int a = node_on_axis<dim>(kernel, n, d);
       nodes.w[n] *= axes[d].w[a];
-      nodes.r[n][d] = dx * axes[d].distance[a];
-      nodes.place[n] += a * tile_stride<dim>(kernel, d) / kNodeWidth;
+      nodes.r[n][d] = axes[d].distance[a];
+    }
+  }
+  nodes.has_gradients = settings.form == Form::gradient || kernel == Kernel::linear;
+  if (!nodes.has_gradients) return;
+  for (int n = 0; n < nodes.count; ++n) {
+    nodes.grad_w[n] = constant_vector<double, dim>(inv_dx);
+    for (int d = 0; d < dim; ++d) {
+      const int a = node_on_axis<dim>(kernel, n, d);
       for (int e = 0; e < dim; ++e) nodes.grad_w[n][e] *= e == d ? axes[d].dw[a] : axes[d].w[a];
     }
   }

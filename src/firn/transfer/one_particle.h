@@ -2,6 +2,7 @@
 
 #include <firn/state/grid.h>
 #include <firn/state/particle_columns.h>
+#include <firn/transfer/tile.h>
 #include <firn/transfer/transfer_settings.h>
 
 #include <array>
@@ -19,7 +20,8 @@ struct ParticleNodes {
 
   int count = 0;
   double w[kMost];                 ///< w_ip
-  Vec<double, dim> grad_w[kMost];  ///< 1/m; the gradient form and the linear kernel only
+  bool has_gradients = false;      ///< whether anything asks for grad_w
+  Vec<double, dim> grad_w[kMost];  ///< 1/m
   Vec<double, dim> r[kMost];       ///< x_i - x_p, m
   std::int32_t place[kMost];       ///< number of the node in the tile of the particle's block
 };
@@ -42,6 +44,26 @@ int node_on_axis(Kernel kernel, int n, int d) {
     return places;
   }();
   return kPlaces[static_cast<std::size_t>(kernel)][static_cast<std::size_t>(n)][static_cast<std::size_t>(d)];
+}
+
+/// Place of a particle's node n in the tile, from that of its first node.
+template <int dim>
+int node_place(Kernel kernel, int n) {
+  static constexpr auto kPlaces = [] {
+    std::array<std::array<std::int16_t, ParticleNodes<dim>::kMost>, 3> places = {};
+    for (int k = 0; k < 3; ++k) {
+      const auto each = static_cast<Kernel>(k);
+      for (int m = 0; m < power(support(each), dim); ++m) {
+        int place = 0;
+        for (int d = dim - 1, rest = m; d >= 0; --d, rest /= support(each)) {
+          place += rest % support(each) * tile_stride<dim>(each, d) / kNodeWidth;
+        }
+        places[static_cast<std::size_t>(k)][static_cast<std::size_t>(m)] = static_cast<std::int16_t>(place);
+      }
+    }
+    return places;
+  }();
+  return kPlaces[static_cast<std::size_t>(kernel)][static_cast<std::size_t>(n)];
 }
 
 /// Nodes of particle p, which has a cell in its block.
@@ -78,13 +100,15 @@ class ParticleLoad {
 template <int dim>
 class ParticleSums {
  public:
-  void add(double w, const Vec<double, dim>& grad_w, const Vec<double, dim>& r, const Vec<double, dim>& v,
-           const Vec<double, dim>& change) {
-    velocity_ += w * v;
-    change_ += w * change;
-    moment_ = moment_ + outer(w * v, r);
+  void add(double w, const Vec<double, dim>& r, const Vec<double, dim>& v) {
+    const Vec<double, dim> part = w * v;
+    velocity_ += part;
+    moment_ = moment_ + outer(part, r);
+  }
+  void add_gradient(const Vec<double, dim>& grad_w, const Vec<double, dim>& v) {
     gradient_ = gradient_ + outer(v, grad_w);
   }
+  void add_change(double w, const Vec<double, dim>& change) { change_ += w * change; }
 
   /// sum w_ip v_i
   const Vec<double, dim>& velocity() const { return velocity_; }
