@@ -40,7 +40,6 @@ int element_bytes(Element element, int real_bytes) {
 const std::array<FieldSpec, kFieldCount> kFields = {{
     {"offset", "", "Position inside the cell, in cells.", Element::real, Shape::vector},
     {"strain", "", "Deformation gradient; its elastic part for plastic models.", Element::real, Shape::matrix},
-    {"mass", "kg", "Mass; per metre of thickness in 2D.", Element::real, Shape::scalar},
     {"rest_volume", "m^3", "Undeformed volume; per metre of thickness in 2D.", Element::real, Shape::scalar},
     {"velocity", "m/s", "Velocity.", Element::real, Shape::vector},
     {"affine", "1/s", "Affine velocity matrix C of APIC.", Element::real, Shape::matrix},
@@ -64,7 +63,7 @@ ParticleLayout ParticleLayout::of(int dim, int real_bytes, const Options& option
     layout.field[f] = wanted ? layout.bytes : -1;
     layout.bytes += layout.components[f] * element_bytes(kFields[f].element, real_bytes);
   };
-  for (const Field field : {Field::offset, Field::strain, Field::mass, Field::rest_volume}) place(field);
+  for (const Field field : {Field::offset, Field::strain, Field::rest_volume}) place(field);
   layout.history = layout.bytes;
   layout.bytes += options.history * real_bytes;
   if (!options.keeps_velocity) layout.kept_reals = layout.bytes / real_bytes;

@@ -12,8 +12,7 @@ namespace firn {
 enum class Field : int {
   offset,       ///< position inside the cell, in cells: x = dx (cell + kernel offset + offset), offset in [0, 1]
   strain,       ///< F_p (elastic part, for plastic models), row-major
-  mass,         ///< m_p, kg (kg/m in 2D)
-  rest_volume,  ///< V_p^0, m^3 (m^2 in 2D)
+  rest_volume,  ///< V_p^0, m^3 (m^2 in 2D); m_p is the material's density times it
   velocity,     ///< v_p, m/s
   affine,       ///< C_p, 1/s, row-major: row is the velocity's component
   stress,       ///< Kirchhoff, Pa: xx yy zz xy xz yz in 3D, xx yy zz xy in 2D
@@ -24,7 +23,7 @@ enum class Field : int {
   body,          ///< index into the scene's bodies
   cell,          ///< place of the particle's cell in its block, see cell_code
 };
-inline constexpr int kFieldCount = 12;
+inline constexpr int kFieldCount = 11;
 
 struct FieldSpec {
   enum class Element { real, number32, number16, number8 };

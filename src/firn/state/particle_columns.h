@@ -22,11 +22,14 @@ struct Components {
 template <class Real, int dim>
 struct ParticleColumns {
   Components<Real> offset, strain, velocity, affine, stress, grad_v, acceleration, history;
-  Real *mass, *rest_volume;
+  Real* rest_volume;
   std::uint32_t* id;
   std::uint16_t* body;
   std::uint8_t* cell;
+  Real density = 0;  ///< rho_0, kg/m^3 (kg/m^2 in 2D)
 
+  /// m_p, kg (kg/m in 2D)
+  Real mass(std::uint32_t p) const { return density * rest_volume[p]; }
   /// F's rate of change comes from grad v, or from C where both are the same.
   const Components<Real>& velocity_gradient() const { return grad_v ? grad_v : affine; }
 };
@@ -58,7 +61,6 @@ ParticleColumns<Real, dim> columns_of(const ParticleLayout& layout, ParticleStor
   ParticleColumns<Real, dim> columns;
   columns.offset = components(place(Field::offset));
   columns.strain = components(place(Field::strain));
-  columns.mass = components(place(Field::mass)).first;
   columns.rest_volume = components(place(Field::rest_volume)).first;
   columns.history = components(layout.history);
   columns.velocity = components(place(Field::velocity));

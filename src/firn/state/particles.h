@@ -33,6 +33,7 @@ class Particles {
     bool separate_grad_v = false;
     bool acceleration = false;
     std::vector<HistorySpec> history = {};
+    double density = 1;  ///< rho_0, kg/m^3 (kg/m^2 in 2D)
   };
 
   /// One field's component over all particles, block after block: column[p]. For output, measuring and tests; a step's
@@ -91,7 +92,7 @@ class Particles {
   /// Error(usage) if a position lies more than CellKey::kCellLimit cells from the origin, or the body has no room in
   /// its column.
   void append(std::span<const Vec<double, dim>> positions, double dx, Kernel kernel, const Period<dim>& period,
-              double mass, double rest_volume, std::uint32_t first_id, std::uint32_t body);
+              double rest_volume, std::uint32_t first_id, std::uint32_t body);
 
   /// Removes the particles at these places, ascending; all must be sorted. The others keep their order.
   void remove(std::span<const std::uint32_t> places);
