@@ -4,6 +4,7 @@
 #include <firn/apps/scene_options.h>
 #include <firn/core/log.h>
 #include <firn/scene/build_world.h>
+#include <firn/simulation/memory_estimate.h>
 #include <firn/simulation/simulation.h>
 #include <fmt/format.h>
 
@@ -53,6 +54,23 @@ Calibration calibrate(const Scene& scene, const WorldPlan& plan) {
   return calibration;
 }
 
+/// What a crash would cost, and what it takes that it costs no more.
+void print_checkpoints(const Scene& scene, const WorldPlan& plan) {
+  const CheckpointSettings& settings = scene.checkpoint;
+  const double minutes = settings.every_minutes;
+  std::string loss = "the whole run";
+  if (minutes > 0 && settings.every_frames > 0) {
+    loss = fmt::format("{:g} min of computing or {} frames, whichever is less", minutes, settings.every_frames);
+  } else if (minutes > 0) {
+    loss = fmt::format("{:g} min of computing", minutes);
+  } else if (settings.every_frames > 0) {
+    loss = fmt::format("{} frames", settings.every_frames);
+  }
+  const std::string kept = settings.keep > 0 ? fmt::format("the newest {}", settings.keep) : "all";
+  fmt::print("  checkpoint  {:.3f} GiB each, twice that in the middle of a frame; {} stay; a crash loses {} at most\n",
+             checkpoint_bytes(scene, plan) / 0x1p30, kept, loss);
+}
+
 void check_scene(const SceneOptions& options) {
   const Scene scene = load(options);
   const WorldPlan plan = plan_world(scene);
@@ -73,6 +91,7 @@ void check_scene(const SceneOptions& options) {
   fmt::print("  memory      {:.2f} GiB of {:.1f} GiB\n", memory / 0x1p30, static_cast<double>(total_memory()) / 0x1p30);
   fmt::print("  disk        {:.2f} GiB for {} frames\n",
              frames * particles * kFrameBytesPerParticle[precision] / 0x1p30, frames);
+  print_checkpoints(scene, plan);
   fmt::print("  time step   {:.2g} s at the start, by {}\n", dt, calibration.limit);
   fmt::print("  steps       {:.0f} or more: faster or stiffer material takes shorter ones\n", steps);
   fmt::print("  time        {} or more, pictures not counted\n",

@@ -24,11 +24,17 @@ struct FinishedFrame {
   Totals totals;
 };
 
+/// What a run that goes on finds in its folder.
+struct FrameHistory {
+  std::int64_t frames = 0;  ///< those up to here stay as they are
+  bool keeps_later = true;  ///< whether what is later stays listed until it is replaced by its like
+};
+
 /// Writes frames, the row of statistics, pictures and the film in a thread of its own, while the next frame is
 /// computed.
 class FrameOutput {
  public:
-  FrameOutput(const Scene& scene, const RunFolder& folder);
+  FrameOutput(const Scene& scene, const RunFolder& folder, const FrameHistory& history = {});
   /// Stops without closing the film if finish() was not called.
   ~FrameOutput();
   FrameOutput(const FrameOutput&) = delete;
@@ -36,6 +42,9 @@ class FrameOutput {
 
   /// Hands a frame over; waits while two are still unwritten. Throws what went wrong with an earlier one.
   void submit(FinishedFrame frame);
+
+  /// Waits until every frame that was handed over is on the disk. Throws what went wrong.
+  void wait();
 
   /// Waits for everything and closes the film. Throws what went wrong.
   void finish();
@@ -46,12 +55,15 @@ class FrameOutput {
   void work();
   void write(const FinishedFrame& frame);
   void draw(const FinishedFrame& frame);
+  Image draw(const Snapshot& snapshot);
+  void draw_history();
 
   struct Files;
 
   const Scene scene_;
   const SceneDrawing drawing_;
   const RunFolder folder_;
+  const FrameHistory history_;
   std::unique_ptr<Files> files_;
   std::unique_ptr<Film> film_;
   std::optional<Camera> camera_;  // of the first picture, so that an automatic camera stands still
@@ -59,7 +71,7 @@ class FrameOutput {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<FinishedFrame> queue_;
-  bool busy_ = false, closing_ = false;
+  bool busy_ = true, closing_ = false;
   std::exception_ptr failure_;
   std::thread thread_;
 };

@@ -1,10 +1,12 @@
 #include <firn/core/error.h>
 #include <firn/core/log.h>
+#include <firn/core/simd.h>
 #include <firn/integrators/step.h>
 #include <firn/integrators/verbs.h>
 #include <firn/materials/model_info.h>
 #include <firn/measure/output_columns.h>
 #include <firn/scene/vary_parameters.h>
+#include <firn/simulation/checkpoint_state.h>
 #include <firn/simulation/runaways.h>
 #include <firn/simulation/simulation.h>
 #include <fmt/format.h>
@@ -17,6 +19,8 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -43,9 +47,7 @@ class SimulationOf final : public Simulation {
     auto built = build_world<Real, dim>(scene_);
     plan_ = std::move(built.plan);
     world_ = std::make_unique<World<Real, dim>>(std::move(built.world));
-    limits_.particle_cfl = scene.limits.particle_cfl;
-    limits_.elastic_cfl = scene.limits.elastic_cfl;
-    if (scene.limits.max_dt) limits_.max_dt = *scene.limits.max_dt;
+    set_limits();
     for (const auto& material : world_->materials) material_names_.push_back(material.name);
     StepReport prepared;
     arena_.execute([&] { prepared = prepare(*world_); });
@@ -72,26 +74,83 @@ class SimulationOf final : public Simulation {
     return taken;
   }
 
-  FrameReport advance_frame() override {
+  std::optional<FrameReport> advance_frame(const Pause& pause) override {
     const auto start = std::chrono::steady_clock::now();
-    keep();
+    int attempt = 0;
+    double seconds_before = 0;
+    std::optional<TimeStep> promised;
+    if (paused_) {
+      attempt = paused_->attempt;
+      seconds_before = report_.wall_seconds;
+      promised = paused_->next;
+      paused_.reset();
+    } else {
+      keep();
+    }
     std::optional<ParticleFailure> failure;
-    for (int attempt = 0; attempt < kMaxTries; ++attempt) {
-      if (attempt > 0) retry(*failure);
-      failure = try_frame();
+    for (;; ++attempt) {
+      failure = try_frame(promised, pause);
+      report_.wall_seconds =
+          seconds_before + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      if (paused_) {
+        paused_->attempt = attempt;
+        return std::nullopt;
+      }
       if (!failure) {
         report_.retries = attempt;
-        report_.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return report_;
       }
-      if (!kept_) break;
+      if (!kept_ || attempt + 1 == kMaxTries) break;
+      retry(*failure);
+      promised.reset();
     }
     const std::string text = describe(*failure, report_.dt);
     if (kept_) {
-      restore();
+      take_back();
       report_ = kept_->report;
     }
     throw Error(ErrorKind::numerical, text);
+  }
+
+  Checkpoint checkpoint() const override {
+    if (!world_->drained) throw Error(ErrorKind::usage, "a checkpoint must be taken where a frame ends or pauses");
+    Checkpoint checkpoint;
+    checkpoint.arithmetic = simd_target() == "baseline" ? "separate" : "fused";
+    checkpoint.layout = layout_text(*world_);
+    checkpoint.state = present_state();
+    if (paused_ && kept_) checkpoint.frame_start = kept_state();
+    return checkpoint;
+  }
+
+  void restore(const Checkpoint& checkpoint) override {
+    if (const std::string layout = layout_text(*world_); layout != checkpoint.layout) {
+      throw Error(ErrorKind::files,
+                  fmt::format("the checkpoint cannot be used: it is {}, and the scene {}", checkpoint.layout, layout));
+    }
+    // Everything that can be refused comes before the first change.
+    Restored present = read_state(checkpoint.state);
+    std::optional<Kept> frame_start;
+    if (checkpoint.frame_start) frame_start = read_state(*checkpoint.frame_start).kept;
+    std::optional<Paused> paused;
+    if (checkpoint.state.texts.contains("next.limit")) paused = read_paused(checkpoint.state);
+    const std::string found = fmt::format("{:016x}", hash_of(present.kept.particles, present.kept, present.frame));
+    if (const std::string& expected = text_of(checkpoint.state, "hash"); found != expected) {
+      throw Error(ErrorKind::files, fmt::format("the checkpoint cannot be used: it does not lead to the state that was "
+                                                "saved (its hash is {}, and was {})",
+                                                found, expected));
+    }
+
+    kept_ = std::move(present.kept);
+    take_back();
+    frame_ = present.frame;
+    halvings_ = present.halvings;
+    set_limits();
+    report_ = kept_->report;
+    kept_ = std::move(frame_start);
+    paused_ = std::move(paused);
+    if (!paused_) return;
+    limit_name_ = paused_->next.limit;
+    paused_->next.limit = limit_name_;
   }
 
   Snapshot snapshot() const override {
@@ -132,24 +191,32 @@ class SimulationOf final : public Simulation {
   }
 
   std::uint64_t hash() const override {
-    const std::uint64_t clock[2] = {world_->steps, static_cast<std::uint64_t>(frame_)};
-    std::uint64_t hash = XXH64(clock, sizeof(clock), XXH64(&world_->t, sizeof(world_->t), 1));
-    for (const auto& material : world_->materials) {
-      const std::uint64_t part = material.particles.hash();
-      hash = XXH64(&part, sizeof(part), hash);
-    }
-    return hash;
+    std::vector<std::reference_wrapper<const Particles<Real, dim>>> particles;
+    for (const auto& material : world_->materials) particles.push_back(material.particles);
+    return hash_of(particles, {.t = world_->t, .steps = world_->steps}, frame_);
   }
 
  private:
   /// What a frame can be taken back to.
   struct Kept {
-    std::vector<Particles<Real, dim>> particles;
-    std::vector<std::array<double, 3>> speeds;  ///< largest, of waves, viscosity
-    double t, max_speed, max_collider_speed;
-    std::uint64_t steps;
-    std::int64_t parked;
-    FrameReport report;
+    std::vector<Particles<Real, dim>> particles = {};
+    std::vector<MaterialSpeeds> speeds = {};
+    double t = 0, max_speed = 0, max_collider_speed = 0;
+    std::uint64_t steps = 0;
+    std::int64_t parked = 0;
+    FrameReport report = {};
+  };
+
+  /// Where a frame has paused.
+  struct Paused {
+    TimeStep next;
+    int attempt = 0;
+  };
+
+  struct Restored {
+    Kept kept;
+    std::int64_t frame;
+    int halvings;
   };
 
   void keep() {
@@ -157,7 +224,7 @@ class SimulationOf final : public Simulation {
     kept_.emplace();
     for (const auto& material : world_->materials) {
       kept_->particles.push_back(material.particles);
-      kept_->speeds.push_back({material.max_speed, material.wave_speed, material.kinematic_viscosity});
+      kept_->speeds.push_back(speeds_of(material));
     }
     kept_->t = world_->t;
     kept_->max_speed = world_->max_speed;
@@ -167,7 +234,103 @@ class SimulationOf final : public Simulation {
     kept_->report = report_;
   }
 
-  void restore() {
+  template <class List>
+  static std::uint64_t hash_of(const List& particles, const Kept& at, std::int64_t frame) {
+    const std::uint64_t clock[2] = {at.steps, static_cast<std::uint64_t>(frame)};
+    std::uint64_t hash = XXH64(clock, sizeof(clock), XXH64(&at.t, sizeof(at.t), 1));
+    for (const Particles<Real, dim>& each : particles) {
+      const std::uint64_t part = each.hash();
+      hash = XXH64(&part, sizeof(part), hash);
+    }
+    return hash;
+  }
+
+  static MaterialSpeeds speeds_of(const MaterialSet<Real, dim>& material) {
+    return {material.max_speed, material.wave_speed, material.kinematic_viscosity};
+  }
+
+  /// What both the present state and the one at the frame's start consist of, but for the materials.
+  CheckpointState clock_state(const Kept& at) const {
+    CheckpointState state;
+    state.numbers["time"] = at.t;
+    state.numbers["max_speed"] = at.max_speed;
+    state.numbers["max_collider_speed"] = at.max_collider_speed;
+    state.counters["steps"] = static_cast<std::int64_t>(at.steps);
+    state.counters["parked"] = at.parked;
+    state.counters["frame"] = frame_;
+    state.counters["halvings"] = halvings_;
+    save_report(at.report, state);
+    return state;
+  }
+
+  CheckpointState kept_state() const {
+    CheckpointState state = clock_state(*kept_);
+    for (std::size_t m = 0; m < world_->materials.size(); ++m) {
+      state.materials.push_back(save_material(world_->materials[m], kept_->particles[m], kept_->speeds[m]));
+    }
+    return state;
+  }
+
+  CheckpointState present_state() const {
+    Kept now = {};
+    now.t = world_->t;
+    now.max_speed = world_->max_speed;
+    now.max_collider_speed = world_->max_collider_speed;
+    now.steps = world_->steps;
+    now.parked = guard_.parked();
+    now.report = report_;
+    CheckpointState state = clock_state(now);
+    for (const auto& material : world_->materials) {
+      state.materials.push_back(save_material(material, material.particles, speeds_of(material)));
+    }
+    state.texts["hash"] = fmt::format("{:016x}", hash());
+    if (paused_) {
+      state.numbers["next.dt"] = paused_->next.dt;
+      state.texts["next.limit"] = paused_->next.limit;
+      state.counters["next.material"] = paused_->next.material;
+      state.counters["attempt"] = paused_->attempt;
+    }
+    return state;
+  }
+
+  Restored read_state(const CheckpointState& state) {
+    if (state.materials.size() != world_->materials.size()) {
+      throw Error(ErrorKind::files, fmt::format("the checkpoint cannot be used: it has {} materials, and the scene {}",
+                                                state.materials.size(), world_->materials.size()));
+    }
+    Restored restored = {};
+    Kept& kept = restored.kept;
+    kept.t = number_of(state, "time");
+    kept.max_speed = number_of(state, "max_speed");
+    kept.max_collider_speed = number_of(state, "max_collider_speed");
+    kept.steps = static_cast<std::uint64_t>(counter_of(state, "steps"));
+    kept.parked = counter_of(state, "parked");
+    kept.report = load_report(state);
+    restored.frame = counter_of(state, "frame");
+    restored.halvings = static_cast<int>(counter_of(state, "halvings"));
+    for (std::size_t m = 0; m < state.materials.size(); ++m) {
+      kept.speeds.push_back(load_speeds(state.materials[m]));
+      arena_.execute([&] {
+        kept.particles.push_back(
+            load_particles(state.materials[m], world_->materials[m], world_->transfer.flip > 0, scene_.bodies.size()));
+      });
+    }
+    return restored;
+  }
+
+  Paused read_paused(const CheckpointState& state) {
+    Paused paused;
+    paused.next.dt = number_of(state, "next.dt");
+    paused.next.limit = text_of(state, "next.limit");
+    paused.next.material = static_cast<int>(counter_of(state, "next.material"));
+    if (paused.next.material >= static_cast<int>(material_names_.size()) || !(paused.next.dt > 0)) {
+      throw Error(ErrorKind::files, "the checkpoint cannot be used: its next step is not one of this scene");
+    }
+    paused.attempt = static_cast<int>(counter_of(state, "attempt"));
+    return paused;
+  }
+
+  void take_back() {
     for (std::size_t m = 0; m < world_->materials.size(); ++m) {
       auto& material = world_->materials[m];
       material.particles = kept_->particles[m];
@@ -188,16 +351,22 @@ class SimulationOf final : public Simulation {
   void retry(const ParticleFailure& failure) {
     log_warning(
         fmt::format("{}; taking frame {} back and halving the time step", describe(failure, report_.dt), frame_ + 1));
-    restore();
-    limits_.particle_cfl /= 2;
-    limits_.elastic_cfl /= 2;
-    limits_.max_dt /= 2;
+    take_back();
+    ++halvings_;
+    set_limits();
   }
 
-  std::optional<ParticleFailure> try_frame() {
+  void set_limits() {
+    limits_.particle_cfl = std::ldexp(scene_.limits.particle_cfl, -halvings_);
+    limits_.elastic_cfl = std::ldexp(scene_.limits.elastic_cfl, -halvings_);
+    limits_.max_dt = std::ldexp(scene_.limits.max_dt.value_or(std::numeric_limits<double>::infinity()), -halvings_);
+  }
+
+  /// @param promised the next step, where a paused frame goes on
+  std::optional<ParticleFailure> try_frame(const std::optional<TimeStep>& promised, const Pause& pause) {
     std::optional<ParticleFailure> failure;
-    arena_.execute([&] { failure = try_steps(frame_time(frame_ + 1)); });
-    if (failure) return failure;
+    arena_.execute([&] { failure = try_steps(frame_time(frame_ + 1), promised, pause); });
+    if (failure || paused_) return failure;
     arena_.execute([&] { guard_.park_far(*world_); });
     ++frame_;
     report_.frame = frame_;
@@ -207,31 +376,41 @@ class SimulationOf final : public Simulation {
     return std::nullopt;
   }
 
-  std::optional<ParticleFailure> try_steps(double until) {
-    report_ = {};
-    report_.dt = std::numeric_limits<double>::infinity();
-    TimeStep next = choose_time_step(*world_, limits_, until - world_->t);
+  std::optional<ParticleFailure> try_steps(double until, const std::optional<TimeStep>& promised, const Pause& pause) {
+    if (!promised) {
+      report_ = {};
+      report_.dt = std::numeric_limits<double>::infinity();
+    }
+    TimeStep next = promised ? *promised : choose_time_step(*world_, limits_, until - world_->t);
     while (world_->t < until) {
       const TimeStep taken = next;
-      bool drained = false;
+      bool drained = false, stop = false;
       const StepReport step = step_explicit(*world_, taken.dt, [&] {
+        stop = pause && pause();
         // What is left behind the last step of a frame is round-off.
         const double remaining = until - (world_->t + taken.dt);
         drained = remaining < 1e-9 * taken.dt || guard_.may_park(*world_);
         if (drained) return 0.0;
         next = choose_time_step(*world_, limits_, remaining);
         drained = !(next.dt > 0);
-        return next.dt;
+        // To stop drains the state as well, but the next step stays the one that is chosen here: the step after a pause
+        // must be as long as without it.
+        return stop ? 0.0 : next.dt;
       });
       note_step(taken, step.failure.has_value());
       if (step.failure) return step.failure;
-      if (!drained) continue;
-      guard_.park_fast(*world_);
-      // The last step of a frame lands on its time.
-      if (until - world_->t < 1e-9 * taken.dt) {
-        world_->t = until;
-      } else {
-        next = choose_time_step(*world_, limits_, until - world_->t);
+      if (drained) {
+        guard_.park_fast(*world_);
+        // The last step of a frame lands on its time.
+        if (until - world_->t < 1e-9 * taken.dt) {
+          world_->t = until;
+        } else {
+          next = choose_time_step(*world_, limits_, until - world_->t);
+        }
+      }
+      if (stop && world_->t < until) {
+        paused_ = {next, 0};
+        break;
       }
     }
     return std::nullopt;
@@ -272,7 +451,10 @@ class SimulationOf final : public Simulation {
   TimeStepLimits limits_;
   RunawayGuard<Real, dim> guard_;
   std::vector<std::string> material_names_;
+  int halvings_ = 0;  ///< of the limits, since frames were taken back
   std::optional<Kept> kept_;
+  std::optional<Paused> paused_;
+  std::string limit_name_;  ///< of a restored next step, which refers to it
   FrameReport report_;
 };
 
