@@ -1,6 +1,7 @@
 #include <firn/core/error.h>
 #include <firn/io/frame_reader.h>
 #include <firn/io/frame_writer.h>
+#include <gtest/gtest-spi.h>
 #include <io/frame_samples.h>
 
 #include <algorithm>
@@ -66,6 +67,15 @@ TEST_F(Damage, OfTheNewestCheckpointTakesTheOneBefore) {
     expect_good_frames(where);
     if (HasFailure()) return;
   }
+}
+
+/// The harness sees what it is there to see.
+TEST_F(Damage, ControlATornFrameIsNoticed) {
+  ASSERT_EQ(firn(run_arguments()).exit_code, 0);
+  expect_good_frames("undamaged");
+  const fs::path frame = out() / "particles/particles.0002.hdf";
+  fs::resize_file(frame, fs::file_size(frame) - 1);
+  EXPECT_NONFATAL_FAILURE(expect_good_frames("torn"), "particles.0002.hdf: torn");
 }
 
 TEST(DamagedFrame, EveryFlippedByteAndEveryTruncationIsRefused) {

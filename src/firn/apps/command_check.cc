@@ -58,13 +58,14 @@ Calibration calibrate(const Scene& scene, const WorldPlan& plan) {
 void print_checkpoints(const Scene& scene, const WorldPlan& plan) {
   const CheckpointSettings& settings = scene.checkpoint;
   const double minutes = settings.every_minutes;
+  const std::string frames = settings.every_frames == 1 ? "1 frame" : fmt::format("{} frames", settings.every_frames);
   std::string loss = "the whole run";
   if (minutes > 0 && settings.every_frames > 0) {
-    loss = fmt::format("{:g} min of computing or {} frames, whichever is less", minutes, settings.every_frames);
+    loss = fmt::format("{:g} min of computing or {} (whichever is less)", minutes, frames);
   } else if (minutes > 0) {
     loss = fmt::format("{:g} min of computing", minutes);
   } else if (settings.every_frames > 0) {
-    loss = fmt::format("{} frames", settings.every_frames);
+    loss = frames;
   }
   const std::string kept = settings.keep > 0 ? fmt::format("the newest {}", settings.keep) : "all";
   fmt::print("  checkpoint  {:.3f} GiB each, twice that in the middle of a frame; {} stay; a crash loses {} at most\n",
