@@ -200,7 +200,7 @@ class Checker:
         return [name for name in re.findall(r"\bfirn_([a-z]+)\b", links) if name in ALLOWED]
 
     def check_texts(self):
-        paths = [p for p in self.root.iterdir() if p.is_file()]
+        paths = [p for p in self.root.iterdir() if p.is_file() and p.name != ".git"]  # a file in a linked worktree
         for folder in TEXT_FOLDERS:
             paths += [p for p in (self.root / folder).rglob("*") if p.is_file()]
         for path in sorted(paths):

@@ -52,7 +52,7 @@ TEST(Presets, SayWhereEachNumberComesFrom) {
 /// Height of a cone of paste that carries itself, m. The pressure of its weight on the base is density g h / 3, and a
 /// bar yields at sqrt(3) times the shear yield stress.
 double cone_height(std::string_view preset) {
-  return 3 * std::numbers::sqrt3 * number(preset, "shear_yield_stress") / (number(preset, "density") * kGravity);
+  return 3 * std::numbers::sqrt3 * number(preset, "shear_yield_stress", 0) / (number(preset, "density") * kGravity);
 }
 
 TEST(Presets, PastesKeepPeaksAndWaterDoesNot) {

@@ -167,16 +167,21 @@ TEST_P(ColliderError, SaysWhereWhatAndWhatToDo) { EXPECT_TRUE(matches(error_of(G
 
 std::string with_collider(const std::string& text) { return kMinimal + "[[collider]]\n" + text; }  // from line 10
 
+/// The same scene in the plane: one more line, and a body that has a place there.
+std::string of_2d(std::string text) {
+  return "dimension = 2\n" + text.replace(text.find("sphere"), std::string("sphere").size(), "disk");
+}
+
 const std::string kBall = "shape = \"sphere\"\nradius = 1\n";
 
 INSTANTIATE_TEST_SUITE_P(
     Text, ColliderError,
     testing::Values(
         Case{"missing", with_collider("shape = \"torus\"\nradius = 1"),
-             R"(scene.toml:9:1: required and not given: collider 0: tube_radius)"},
+             R"(scene.toml:9:1: required and not given: collider "0": tube_radius)"},
         Case{"not_of_the_shape", with_collider(kBall + "length = 2"),
-             R"(scene.toml:12:10: collider 0: length applies only with shape = "capsule", "cylinder", "cone")"},
-        Case{"flat", "dimension = 2\n" + with_collider("shape = \"cylinder\"\nradius = 1\nlength = 1"),
+             R"(scene.toml:12:10: collider "0": length applies only with shape = "capsule", "cylinder", "cone")"},
+        Case{"flat", of_2d(with_collider("shape = \"cylinder\"\nradius = 1\nlength = 1")),
              R"(scene.toml:11:9: collider .*: this shape needs a 3D scene; in 2D use box, .*)"},
         Case{"no_file", with_collider("shape = \"mesh\"\nfile = \"none.obj\""),
              R"(scene.toml:11:8: collider .*: file "none.obj" is not a file .*)"},
@@ -187,11 +192,11 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"axis", with_collider("shape = \"capsule\"\nradius = 1\nlength = 3\naxis = [0, 0, 0]"),
              R"(scene.toml:13:8: collider .*: axis must not be zero)"},
         Case{"keyframe_key", with_collider(kBall + "keyframes = [{ time = 1, postion = [0, 0, 0] }]"),
-             R"(scene.toml:12:13: collider 0: keyframes entry 1: unknown key "postion"; did you mean "position"\?)"},
+             R"(scene.toml:12:13: collider "0": keyframes entry 1: unknown key "postion"; did you mean "position"\?)"},
         Case{"keyframe_time", with_collider(kBall + "keyframes = [{ scale = 1 }]"),
-             R"(scene.toml:12:13: collider 0: keyframes entry 1: time is required)"},
+             R"(scene.toml:12:13: collider "0": keyframes entry 1: time is required)"},
         Case{"keyframe_value", with_collider(kBall + "keyframes = [{ time = 1, scale = 0 }]"),
-             R"(scene.toml:12:13: collider 0: keyframes entry 1: scale must be > 0, got 0)"},
+             R"(scene.toml:12:13: collider "0": keyframes entry 1: scale must be > 0, got 0)"},
         Case{"keyframe_order", with_collider(kBall + "keyframes = [{ time = 1 }, { time = 1 }]"),
              R"(scene.toml:12:13: collider .*: keyframes: entry 2: times must increase, got 1 s after 1 s)"},
         Case{"keyframe_turn", with_collider(kBall + "keyframes = [{ time = 0 }, { time = 1, rotation = [0, 360, 0] }]"),

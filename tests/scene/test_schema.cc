@@ -33,7 +33,9 @@ TEST(Schema, EveryFieldOfTheSettingsHasAKey) {
   EXPECT_EQ(key_count("method"), field_count<MethodSettings>());
   EXPECT_EQ(key_count("limits"), field_count<LimitSettings>());
   EXPECT_EQ(key_count("body"), field_count<BodySettings>());
-  EXPECT_EQ(key_count("collider"), field_count<ColliderSettings>());
+  // What they share counts as one field, their base.
+  EXPECT_EQ(key_count("part"), field_count<PartSettings>() - 1 + field_count<ShapeSettings>());
+  EXPECT_EQ(key_count("collider"), field_count<ColliderSettings>() - 1 + field_count<ShapeSettings>());
   EXPECT_EQ(key_count("camera"), field_count<CameraSettings>());
   EXPECT_EQ(key_count("render"), field_count<RenderSettings>());
   EXPECT_EQ(key_count("output"), field_count<OutputSettings>());
@@ -69,6 +71,12 @@ TEST(Schema, KeysWriteDifferentFields) {
           break;
         case ValueType::formulas:
           key.set(object, std::vector<NumberOrFormula>{{9}, {0, "x"}, {7}});
+          break;
+        case ValueType::texts:
+          key.set(object, std::vector<std::string>{"other", "another"});
+          break;
+        case ValueType::keyframes:
+          key.set(object, std::vector<KeyframeSettings>{{0, Vec3d{{1, 2, 3}}, {}, 2}, {1, {}, Vec3d{{4, 5, 6}}, {}}});
           break;
         default:
           key.set(object, std::vector<double>{9, 8, 7, 6, 5, 4});
@@ -109,7 +117,12 @@ TEST(Schema, EveryDimensionalKeyHasAUnit) {
                                       "limits.elastic_cfl",
                                       "body.scale",
                                       "body.color",
+                                      "part.normal",
+                                      "part.axis",
+                                      "part.scale",
                                       "collider.normal",
+                                      "collider.axis",
+                                      "collider.scale",
                                       "collider.friction",
                                       "collider.color",
                                       "camera.up",
@@ -118,7 +131,8 @@ TEST(Schema, EveryDimensionalKeyHasAUnit) {
     if (section.kind == SectionKind::named) continue;  // the models' own tests check theirs
     for (const Key& key : section.keys) {
       const bool countable = key.type == ValueType::integer || key.type == ValueType::boolean ||
-                             key.type == ValueType::text || key.type == ValueType::choice;
+                             key.type == ValueType::text || key.type == ValueType::texts ||
+                             key.type == ValueType::choice || key.type == ValueType::keyframes;
       if (countable) continue;
       EXPECT_EQ(key.info.unit.empty(), pure.count(key_path(section, key)) == 1) << key_path(section, key);
     }

@@ -4,20 +4,22 @@
 #include <firn/materials/point_driver.h>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string_view>
 #include <vector>
 
 namespace firn::test {
 
-/// A parameter of a preset, or its density.
-inline double number(std::string_view preset_name, std::string_view parameter) {
+/// A parameter of a preset, or its density. A preset without it fails the test, unless a number stands in.
+inline double number(std::string_view preset_name, std::string_view parameter,
+                     std::optional<double> otherwise = std::nullopt) {
   const Preset& preset = *find_preset(preset_name);
   if (parameter == "density") return preset.density;
   for (const Preset::Value& value : preset.values) {
     if (value.parameter == parameter) return value.value;
   }
-  ADD_FAILURE() << preset_name << " has no " << parameter;
-  return 0;
+  if (!otherwise) ADD_FAILURE() << preset_name << " has no " << parameter;
+  return otherwise.value_or(0);
 }
 
 /// One point of a preset, driven along a path (point_driver.h).

@@ -58,7 +58,7 @@ ShapeSurface drawn_surface(const Scene& scene, const ColliderSettings&, const Sh
 /// Whether a View has a kind of its own for this shape.
 bool has_own_kind(const ColliderSettings& collider) {
   using Shape = ShapeSettings::Shape;
-  return !collider.inverted &&
+  return !collider.inverted && collider.look == ColliderSettings::Look::solid &&
          (collider.shape == Shape::half_space || collider.shape == Shape::box || collider.shape == Shape::sphere);
 }
 
@@ -77,6 +77,7 @@ void draw_own_kind(const ColliderSettings& collider, const Pose<3>& pose, View& 
 
 SceneDrawing::SceneDrawing(const Scene& scene) : scene_(scene) {
   for (const ColliderSettings& collider : scene.colliders) {
+    if (collider.look == ColliderSettings::Look::hidden) continue;
     if (scene.dimension == 2) add<2>(collider);
     if (scene.dimension == 3) add<3>(collider);
   }
@@ -96,6 +97,7 @@ void SceneDrawing::add(const ColliderSettings& settings) {
     drawn.solid.surface = std::make_shared<ShapeSurface>(drawn_surface(scene_, settings, shape));
     drawn.solid.color = drawn_color(settings.color);
     drawn.solid.endless = dim == 3 && settings.inverted;
+    drawn.solid.glass = settings.look == ColliderSettings::Look::glass;
   }
   colliders_.push_back(std::move(drawn));
 }

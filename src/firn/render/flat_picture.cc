@@ -61,7 +61,8 @@ Vec3f background(const View& view, const FlatCamera& camera, double px, double p
   for (const DrawnSolid& solid : view.solids) {
     const Vec3d local = (1 / solid.scale) * (transpose(solid.rotation) * (x - solid.origin));
     const double distance = solid.scale * solid.section->distance({{local[0], local[1]}});
-    cover(distance * scale, color_or(solid.color, kColliderColor), &color);
+    const Vec3f own = color_or(solid.color, kColliderColor);
+    cover(distance * scale, solid.glass ? mix(own, color, 0.7F) : own, &color);
   }
   return color;
 }

@@ -60,6 +60,7 @@ struct Surface {
   Vec3f normal;  ///< for shading
   Vec3f color;
   const Look* look;
+  float clear = 1;                 ///< part of its light that reaches the camera through glass
   float body = 0;                  ///< 1: part of a dense body, 0: a loose particle
   int sun_ray = -1, sky_ray = -1;  ///< indices of its rays; -1: none was sent
 };
@@ -73,8 +74,9 @@ class Caster {
 
  private:
   struct Scratch {
-    std::vector<Ray> rays, sun_rays, sky_rays;
-    std::vector<Hit> hits;
+    std::vector<Ray> rays, glass_rays, sun_rays, sky_rays;
+    std::vector<Hit> hits, glass_hits;
+    std::vector<float> clear;  ///< part of the light that glass lets pass, for each ray
     std::vector<Surface> surfaces;
     std::vector<std::uint8_t> sun_blocked, sky_blocked;
   };
@@ -83,6 +85,7 @@ class Caster {
   static std::vector<Vec3f> local_centers(const Snapshot& snapshot, const CameraRays& rays);
   RayGeometry geometry(const View& view, const Camera& camera) const;
   void draw_row(int y, Scratch* scratch, PixelLight* row) const;
+  void look_through_glass(Scratch* scratch, PixelLight* row) const;
   Surface surface_at(int x, const Ray& ray, const Hit& hit) const;
   void shape_particle(const Vec3f& place, Surface* surface) const;
   void send_rays(int sample, int y, Surface* surface, Scratch* scratch) const;
@@ -195,6 +198,7 @@ RayGeometry Caster::geometry(const View& view, const Camera& camera) const {
     }
     drawn.triangles = solid.surface->mesh.triangles;
     drawn.endless = solid.endless;
+    drawn.glass = solid.glass;
   }
   return geometry;
 }
@@ -259,7 +263,7 @@ Vec3f Caster::sunlit_particle(const Surface& s, float visible) const {
 }
 
 void Caster::light(const Surface& s, const Scratch& t, PixelLight* pixel) const {
-  const float fog = haze(s), clear = 1 - fog;
+  const float fog = s.clear * haze(s), clear = s.clear - fog;
   const float sun_visible = s.sun_ray >= 0 && t.sun_blocked[static_cast<std::size_t>(s.sun_ray)] == 0 ? 1 : 0;
   pixel->surface += 1;
   if (s.sky_ray >= 0) {
@@ -294,6 +298,35 @@ void Caster::send_rays(int sample, int y, Surface* s, Scratch* t) const {
   }
 }
 
+/// Thin panes: each surface mirrors the sky by Schlick's formula (1994) and lets the rest pass without bending it.
+void Caster::look_through_glass(Scratch* t, PixelLight* row) const {
+  constexpr int kMostSurfaces = 6;
+  t->glass_rays = t->rays;
+  t->glass_hits = t->hits;
+  std::vector<float> left(t->hits.size());
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = t->hits[i].distance;
+  for (int layer = 0; layer < kMostSurfaces; ++layer) {
+    scene_.intersect_glass(t->glass_rays, t->glass_hits);
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      Hit& hit = t->glass_hits[i];
+      if (hit.kind == HitKind::none) {
+        left[i] = hit.distance = 0;
+        continue;
+      }
+      Ray& ray = t->glass_rays[i];
+      const float grazing = 1 + std::min(dot(hit.normal, ray.direction), 0.0F);
+      const float mirrored = 0.04F + 0.96F * std::pow(grazing, 5.0F);
+      const Vec3f away = ray.direction - (2 * dot(ray.direction, hit.normal)) * hit.normal;
+      row[i / static_cast<std::size_t>(view_.samples)].direct += (t->clear[i] * mirrored) * day_.sky(away);
+      t->clear[i] *= 1 - mirrored;
+      // On by a little more than the distance, or the same surface would be met again.
+      const float step = hit.distance + 1e-4F * rays_.target_distance();
+      ray.origin += step * ray.direction;
+      hit.distance = left[i] = std::max(left[i] - step, 0.0F);
+    }
+  }
+}
+
 void Caster::draw_row(int y, Scratch* t, PixelLight* row) const {
   const int samples = view_.samples, count = view_.width * samples;
   t->rays.resize(static_cast<std::size_t>(count));
@@ -304,6 +337,8 @@ void Caster::draw_row(int y, Scratch* t, PixelLight* row) const {
         rays_.at(static_cast<float>(i / samples) + inside.x, static_cast<float>(y) + inside.y);
   }
   scene_.intersect(t->rays, t->hits);
+  t->clear.assign(t->rays.size(), 1);
+  if (scene_.has_glass()) look_through_glass(t, row);
 
   t->surfaces.clear();
   t->sun_rays.clear();
@@ -312,9 +347,10 @@ void Caster::draw_row(int y, Scratch* t, PixelLight* row) const {
     const Ray& ray = t->rays[static_cast<std::size_t>(i)];
     const Hit& hit = t->hits[static_cast<std::size_t>(i)];
     if (hit.kind == HitKind::none) {
-      row[i / samples].direct += day_.sky(ray.direction);
+      row[i / samples].direct += t->clear[static_cast<std::size_t>(i)] * day_.sky(ray.direction);
     } else {
       t->surfaces.push_back(surface_at(i / samples, ray, hit));
+      t->surfaces.back().clear = t->clear[static_cast<std::size_t>(i)];
       send_rays(i % samples, y, &t->surfaces.back(), t);
     }
   }

@@ -78,9 +78,10 @@ RayScene::RayScene(RayGeometry geometry) : geometry_(std::move(geometry)) {
   for (std::size_t i = 0; i < geometry_.solids.size(); ++i) {
     add_solid(geometry_.solids[i], kSolids + static_cast<unsigned>(i));
   }
-  rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
-  rtcCommitScene(scene_);
+  commit(scene_);
+  if (glass_ != nullptr) commit(glass_);
   if (const RTCError code = rtcGetDeviceError(device_); code != RTC_ERROR_NONE) {
+    if (glass_ != nullptr) rtcReleaseScene(glass_);
     rtcReleaseScene(scene_);
     rtcReleaseDevice(device_);
     throw Error(ErrorKind::resources, fmt::format("cannot draw: Embree failed (error {}) on {} particles",
@@ -89,8 +90,14 @@ RayScene::RayScene(RayGeometry geometry) : geometry_(std::move(geometry)) {
 }
 
 RayScene::~RayScene() {
+  if (glass_ != nullptr) rtcReleaseScene(glass_);
   rtcReleaseScene(scene_);
   rtcReleaseDevice(device_);
+}
+
+void RayScene::commit(RTCScene scene) const {
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+  rtcCommitScene(scene);
 }
 
 void RayScene::add_balls(const std::vector<RayGeometry::Ball>& balls, unsigned id) {
@@ -140,7 +147,8 @@ void RayScene::add_solid(const RayGeometry::Solid& solid, unsigned id) {
     rtcSetGeometryOccludedFilterFunction(geometry, keep_none);
   }
   rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene_, geometry, id);
+  if (solid.glass && glass_ == nullptr) glass_ = rtcNewScene(device_);
+  rtcAttachGeometryByID(solid.glass ? glass_ : scene_, geometry, id);
   rtcReleaseGeometry(geometry);
 }
 
@@ -166,16 +174,11 @@ Hit RayScene::hit_of(const Ray& ray, const RTCRayHit8& packet, unsigned lane) co
     const RayGeometry::Ball& ball = (id == kParticles ? geometry_.particles : geometry_.spheres)[primitive];
     hit.normal = normalized(ray.origin + hit.distance * ray.direction - Vec3f{{ball.x, ball.y, ball.z}});
   }
-  for (std::size_t i = 0; i < geometry_.planes.size(); ++i) {
-    const float distance = distance_to(geometry_.planes[i], ray);
-    if (distance < hit.distance) {
-      hit = {HitKind::plane, static_cast<std::uint32_t>(i), distance, geometry_.planes[i].normal};
-    }
-  }
   return hit;
 }
 
-void RayScene::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
+template <class Answer>
+void RayScene::cast(RTCScene scene, std::span<const Ray> rays, std::span<Hit> hits, const Answer& answer) {
   RTCIntersectContext context = make_context(true);
   for (std::size_t begin = 0; begin < rays.size(); begin += kLanes) {
     const auto count = static_cast<unsigned>(std::min<std::size_t>(kLanes, rays.size() - begin));
@@ -183,13 +186,32 @@ void RayScene::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
     RTCRayHit8 packet;
     for (unsigned lane = 0; lane < count; ++lane) {
       valid[lane] = -1;
-      load(packet.ray, lane, rays[begin + lane], std::numeric_limits<float>::infinity());
+      load(packet.ray, lane, rays[begin + lane], hits[begin + lane].distance);
       packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
       packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
     }
-    rtcIntersect8(valid, scene_, &context, &packet);
-    for (unsigned lane = 0; lane < count; ++lane) hits[begin + lane] = hit_of(rays[begin + lane], packet, lane);
+    rtcIntersect8(valid, scene, &context, &packet);
+    for (unsigned lane = 0; lane < count; ++lane) hits[begin + lane] = answer(rays[begin + lane], packet, lane);
   }
+}
+
+void RayScene::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
+  for (Hit& hit : hits) hit.distance = std::numeric_limits<float>::infinity();
+  cast(scene_, rays, hits, [this](const Ray& ray, const RTCRayHit8& packet, unsigned lane) {
+    Hit hit = hit_of(ray, packet, lane);
+    for (std::size_t i = 0; i < geometry_.planes.size(); ++i) {
+      const float distance = distance_to(geometry_.planes[i], ray);
+      if (distance < hit.distance) {
+        hit = {HitKind::plane, static_cast<std::uint32_t>(i), distance, geometry_.planes[i].normal};
+      }
+    }
+    return hit;
+  });
+}
+
+void RayScene::intersect_glass(std::span<const Ray> rays, std::span<Hit> hits) const {
+  cast(glass_, rays, hits,
+       [this](const Ray& ray, const RTCRayHit8& packet, unsigned lane) { return hit_of(ray, packet, lane); });
 }
 
 void RayScene::occluded(std::span<const Ray> rays, float reach, bool coherent, std::span<std::uint8_t> blocked) const {

@@ -40,6 +40,7 @@ struct RayGeometry {
     std::vector<std::array<std::int32_t, 3>> triangles;
     std::vector<Vec3f> normals;  ///< three for each triangle
     bool endless = false;        ///< met from outside only, and by no shadow ray
+    bool glass = false;          ///< met by intersect_glass alone
   };
   std::vector<Ball> particles;
   std::vector<Plane> planes;
@@ -61,6 +62,10 @@ class RayScene {
   /// hits[i] for rays[i].
   void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
 
+  bool has_glass() const { return glass_ != nullptr; }
+  /// Nearest surfaces of glass within hits[i].distance, which the answers replace: `none` where there is none.
+  void intersect_glass(std::span<const Ray> rays, std::span<Hit> hits) const;
+
   /// blocked[i] is 1 if ray i meets anything within reach m, else 0. coherent: the rays have nearly one direction.
   void occluded(std::span<const Ray> rays, float reach, bool coherent, std::span<std::uint8_t> blocked) const;
 
@@ -68,11 +73,15 @@ class RayScene {
   void add_balls(const std::vector<RayGeometry::Ball>& balls, unsigned id);
   void add_boxes(unsigned id);
   void add_solid(const RayGeometry::Solid& solid, unsigned id);
+  void commit(RTCScene scene) const;
+  template <class Answer>
+  static void cast(RTCScene scene, std::span<const Ray> rays, std::span<Hit> hits, const Answer& answer);
   Hit hit_of(const Ray& ray, const RTCRayHit8& packet, unsigned lane) const;
 
   RayGeometry geometry_;
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
+  RTCScene glass_ = nullptr;  ///< null without glass
 };
 
 }  // namespace firn

@@ -55,6 +55,7 @@ struct DrawnSolid {
   double scale = 1;
   Vec3f color = kDefaultColor;
   bool endless = false;  ///< has no end, as the solid around a cavity: seen from outside only, and casts no shadow
+  bool glass = false;    ///< clear: mirrors a part of the sky, lets the rest pass straight, and casts no shadow
 
   Vec3d at(const Vec3d& x) const { return origin + rotation * (scale * x); }
 };

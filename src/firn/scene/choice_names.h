@@ -48,6 +48,10 @@ struct ChoiceNames<ShapeSettings::Shape> {
                                               "mesh",       "union", "intersection", "difference"};
 };
 template <>
+struct ChoiceNames<ColliderSettings::Look> {
+  static constexpr std::string_view list[] = {"solid", "glass", "hidden"};
+};
+template <>
 struct ChoiceNames<ColliderSettings::Interpolation> {
   static constexpr std::string_view list[] = {"linear", "smooth"};
 };

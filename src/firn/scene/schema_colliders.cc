@@ -168,6 +168,10 @@ Section make_collider_section() {
           .default_text("grey")
           .presentation()
           .help("Red, green, blue: linear reflectance."),
+      K("look", &ColliderSettings::look)
+          .presentation()
+          .help("In pictures and the viewer: solid; glass: clear, mirrors the sky and casts no shadow; hidden: not "
+                "drawn."),
   };
   section.keys.insert(section.keys.end(), more.begin(), more.end());
   return section;

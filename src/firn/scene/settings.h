@@ -146,11 +146,19 @@ struct KeyframeSettings {
   std::optional<Vec3d> position;  ///< m
   std::optional<Vec3d> rotation;  ///< degrees, about x, then y, then z
   std::optional<double> scale;
+
+  friend bool operator==(const KeyframeSettings& a, const KeyframeSettings& b) {
+    const auto same = [](const std::optional<Vec3d>& u, const std::optional<Vec3d>& v) {
+      return u && v ? std::equal(u->e, u->e + 3, v->e) : u.has_value() == v.has_value();
+    };
+    return a.time == b.time && same(a.position, b.position) && same(a.rotation, b.rotation) && a.scale == b.scale;
+  }
 };
 
 struct ColliderSettings : ShapeSettings {
   enum class Contact { sticky, slip, separate };
   enum class Interpolation { linear, smooth };
+  enum class Look { solid, glass, hidden };
 
   Vec3d velocity = {};          ///< m/s
   Vec3d angular_velocity = {};  ///< rad/s, about `position`
@@ -160,6 +168,7 @@ struct ColliderSettings : ShapeSettings {
   Contact contact = Contact::separate;
   double friction = 0;
   std::optional<Vec3d> color;  ///< linear RGB
+  Look look = Look::solid;
 };
 
 struct CameraSettings {

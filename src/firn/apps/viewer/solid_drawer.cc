@@ -55,13 +55,13 @@ void main() {
 
 const char* const kSolidFragment = R"(
 uniform vec3 color, horizon;
-uniform float fade_from;
+uniform float fade_from, opacity;
 in vec3 normal, in_view;
 out vec4 pixel;
 void main() {
   vec3 light = lit(color, normalize(normal), 0.0);
   float far = 1.0 - exp(-max(length(in_view) / fade_from - 1.0, 0.0));
-  pixel = vec4(displayed(mix(light, horizon, far)), 1.0);
+  pixel = vec4(displayed(mix(light, horizon, far)), opacity);
 }
 )";
 
@@ -173,8 +173,9 @@ const SolidDrawer::Uploaded& SolidDrawer::upload(const std::shared_ptr<const Sha
   return entry->second;
 }
 
-void SolidDrawer::draw_solids(const View& view, const Vec3d& origin) const {
+void SolidDrawer::draw_solids(const View& view, const Vec3d& origin, bool glass) const {
   for (const DrawnSolid& solid : view.solids) {
+    if (solid.glass != glass) continue;
     const Uploaded& uploaded = upload(solid.surface);
     glBindVertexArray(uploaded.array.id());
     if (solid.endless) glEnable(GL_CULL_FACE);
@@ -182,6 +183,16 @@ void SolidDrawer::draw_solids(const View& view, const Vec3d& origin) const {
               drawn(solid.color, kColliderColor));
     glDisable(GL_CULL_FACE);
   }
+}
+
+void SolidDrawer::draw_glass(const View& view, const Vec3d& origin) const {
+  solid_.set("opacity", 0.2F);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  draw_solids(view, origin, true);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
 }
 
 void SolidDrawer::draw_sky(const View& view, const OrbitCamera& camera, double aspect) const {
@@ -230,6 +241,7 @@ void SolidDrawer::draw(const View& view, const OrbitCamera& camera, double aspec
   solid_.set("projection", camera.projection_matrix(aspect));
   solid_.set("horizon", Daylight{}.horizon());
   solid_.set("fade_from", static_cast<float>(camera.flat() ? 1e6 * far : 0.08 * far));
+  solid_.set("opacity", 1.0F);
   set_daylight(solid_, view, matrix);
   glEnable(GL_DEPTH_TEST);
   glBindVertexArray(array_.id());
@@ -244,7 +256,7 @@ void SolidDrawer::draw(const View& view, const OrbitCamera& camera, double aspec
     const Mat3d axes = diagonal(constant_vector<double, 3>(sphere.radius));
     draw_mesh(sphere_first_, sphere_count_, sphere.center - origin, axes, drawn(sphere.color, kColliderColor));
   }
-  draw_solids(view, origin);
+  draw_solids(view, origin, false);
   glBindVertexArray(array_.id());
   const Camera& c = camera.camera();
   for (const DrawnHalfSpace& solid : view.half_spaces) {
@@ -264,6 +276,7 @@ void SolidDrawer::draw(const View& view, const OrbitCamera& camera, double aspec
                 from_columns(far * along, far * cross(n, along), n), color);
     }
   }
+  draw_glass(view, origin);
   glBindVertexArray(0);
 }
 

@@ -27,7 +27,9 @@ class SolidDrawer {
   };
 
   const Uploaded& upload(const std::shared_ptr<const ShapeSurface>& surface) const;
-  void draw_solids(const View& view, const Vec3d& origin) const;
+  void draw_solids(const View& view, const Vec3d& origin, bool glass) const;
+  /// Over everything else: what is behind shines through, with no order among the panes.
+  void draw_glass(const View& view, const Vec3d& origin) const;
   void draw_mesh(int first, int count, const Vec3d& center, const Mat3d& axes, const Vec3f& color) const;
 
   GlProgram sky_, solid_;
