@@ -81,7 +81,8 @@ void check_scene(const SceneOptions& options) {
   const double dt = calibration.dt_cells * plan.cell_size;
   const double frames = std::floor(scene.end_time * scene.frame_rate) + 1;
   const double steps = std::ceil(scene.end_time / dt);
-  const double memory = particles * kBytesPerParticle[precision];
+  // A checkpoint is gathered and then laid out as a file before it is written.
+  const double memory = particles * kBytesPerParticle[precision] + 2 * checkpoint_bytes(scene, plan);
   fmt::print("{} is fine\n", options.file);
   fmt::print("  cell size   {:.4g} m\n", plan.cell_size);
   for (const WorldPlan::Body& body : plan.bodies) {

@@ -49,6 +49,7 @@ RunFolder prepare_run_folder(const Scene& scene, bool force) {
       throw Error(ErrorKind::files, fmt::format("cannot remove the old {}: {}", result.string(), error.message()));
     }
   }
+  remove_part_files(folder);
   make_folder(folder.particles());
   if (scene.render.every_nth > 0) make_folder(folder.images());
   write_file_atomically(folder.scene(), resolved_toml(scene, folder.root));

@@ -84,6 +84,15 @@ Error out_of_memory(const Scene& scene, const WorldPlan* plan) {
   return Error(ErrorKind::resources, memory_message(scene, plan));
 }
 
+/// Where a run that cannot go on could be taken up again.
+std::string newest_text(const RunJob& job) {
+  if (job.info.checkpoints.empty()) return "";
+  return fmt::format(
+      " The newest checkpoint is of frame {}: firn resume --allow-changed goes on from it with other "
+      "limits.",
+      job.info.checkpoints.back().frame);
+}
+
 void print_results(const RunJob& job, bool has_film) {
   const RunFolder& folder = job.folder;
   print_line(fmt::format("done in {}", duration_text(job.info.wall_seconds)));
@@ -103,9 +112,10 @@ void run_to_end(const RunJob& job) {
     try {
       loop.run();
     } catch (const Error& error) {
+      if (error.kind() != ErrorKind::numerical) throw;
       // What was accepted before the failure is kept and readable.
-      if (error.kind() == ErrorKind::numerical) loop.finish();
-      throw;
+      loop.finish();
+      throw Error(error.kind(), error.what() + newest_text(job));
     }
     has_film = loop.has_film() && !interrupted();
     if (!interrupted()) loop.finish();
