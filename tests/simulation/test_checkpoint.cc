@@ -240,6 +240,14 @@ TEST(ResumeAfterRollback, ReducedLimitsAndTheFramesBeginningComeBack) {
     }
     EXPECT_GT(restored, 10);
   }
+  // Control: without the frame's beginning there is nothing to take it back to.
+  const auto first = make_violent("-3000"), second = make_violent("-3000");
+  take_steps(*first, 1);
+  Checkpoint without = first->checkpoint();
+  ASSERT_TRUE(without.frame_start.has_value());
+  without.frame_start.reset();
+  second->restore(without);
+  EXPECT_NE(end_of(*second), "");
   set_log_sink(before);
 }
 
