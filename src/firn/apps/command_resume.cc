@@ -109,8 +109,7 @@ void resume(const ResumeOptions& options) {
   extend(scene, options.frames);
 
   catch_interrupts();
-  const std::unique_ptr<Simulation> simulation = create_simulation(scene);
-  simulation->restore(found.checkpoint);
+  const std::unique_ptr<Simulation> simulation = create_simulation(scene, &found.checkpoint);
   if (simulation->frame() > simulation->frame_count()) {
     throw Error(ErrorKind::usage, fmt::format("the run has come to frame {}, after the last one, {}; use --frames",
                                               simulation->frame(), simulation->frame_count()));

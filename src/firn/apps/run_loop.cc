@@ -137,9 +137,11 @@ void run_to_end(const RunJob& job) {
   if (job.style == Progress::Style::text) print_results(job, has_film);
 }
 
-std::unique_ptr<Simulation> create_simulation(const Scene& scene) {
+std::unique_ptr<Simulation> create_simulation(const Scene& scene, const Checkpoint* checkpoint) {
   try {
-    return Simulation::create(scene);
+    std::unique_ptr<Simulation> simulation = Simulation::create(scene);
+    if (checkpoint) simulation->restore(*checkpoint);
+    return simulation;
   } catch (const std::bad_alloc&) {
     throw out_of_memory(scene, nullptr);
   }

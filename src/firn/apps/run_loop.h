@@ -26,7 +26,8 @@ struct RunJob {
 /// do.
 void run_to_end(const RunJob& job);
 
-/// Simulation::create; if there is not enough memory, Error(resources) with the largest arrays.
-std::unique_ptr<Simulation> create_simulation(const Scene& scene);
+/// Simulation::create and, given a checkpoint, restore(); if there is not enough memory, Error(resources) with the
+/// largest arrays.
+std::unique_ptr<Simulation> create_simulation(const Scene& scene, const Checkpoint* checkpoint = nullptr);
 
 }  // namespace firn
