@@ -17,3 +17,14 @@ pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial)
 pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(glfw REQUIRED IMPORTED_TARGET glfw3)
 pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
+
+# Debian's FindOpenVDB.cmake asks for Boost and OpenEXR too, which Firn has no use for. Imath has OpenVDB's half floats.
+find_path(FIRN_OPENVDB_INCLUDE openvdb/openvdb.h REQUIRED)
+find_library(FIRN_OPENVDB_LIBRARY openvdb REQUIRED)
+pkg_check_modules(imath REQUIRED IMPORTED_TARGET Imath)
+mark_as_advanced(FIRN_OPENVDB_INCLUDE FIRN_OPENVDB_LIBRARY)
+add_library(openvdb UNKNOWN IMPORTED)
+set_target_properties(openvdb PROPERTIES
+  IMPORTED_LOCATION ${FIRN_OPENVDB_LIBRARY}
+  INTERFACE_INCLUDE_DIRECTORIES ${FIRN_OPENVDB_INCLUDE}
+  INTERFACE_LINK_LIBRARIES "TBB::tbb;PkgConfig::imath")

@@ -1,8 +1,11 @@
 #include <signal.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <thread>
 #include <vector>
 
@@ -52,13 +55,24 @@ class ResumeRun : public testing::Test {
   }
   static std::string frame_name(int frame) { return "particles/particles.000" + std::to_string(frame) + ".hdf"; }
 
-  /// stats.csv without its last but one column, the wall clock.
+  static std::vector<std::string> fields(const std::string& line) {
+    std::vector<std::string> list;
+    std::stringstream stream(line);
+    for (std::string field; std::getline(stream, field, ',');) list.push_back(field);
+    return list;
+  }
+
+  /// stats.csv without the column of the wall clock.
   static std::string statistics(const fs::path& folder) {
     std::ifstream file(folder / "stats.csv");
     std::string all;
+    std::ptrdiff_t clock = -1;
     for (std::string line; std::getline(file, line);) {
-      const auto last = line.rfind(','), before = line.rfind(',', last - 1);
-      all += line.substr(0, before) + line.substr(last) + "\n";
+      std::vector<std::string> row = fields(line);
+      if (clock < 0) clock = std::find(row.begin(), row.end(), "wall_seconds") - row.begin();
+      row.erase(row.begin() + clock);
+      for (const std::string& field : row) all += field + ",";
+      all += "\n";
     }
     return all;
   }
@@ -68,7 +82,12 @@ class ResumeRun : public testing::Test {
       EXPECT_TRUE(bytes(out(a) / frame_name(frame)) == bytes(out(b) / frame_name(frame))) << "frame " << frame;
     }
     EXPECT_FALSE(fs::exists(out(a) / frame_name(frames + 1)));
+    EXPECT_FALSE(statistics(out(a)).empty());
     EXPECT_EQ(statistics(out(a)), statistics(out(b)));
+    for (const char* probe : {"probes/row.csv", "probes/place.csv"}) {
+      EXPECT_EQ(fs::exists(out(a) / probe), fs::exists(out(b) / probe));
+      EXPECT_EQ(bytes(out(a) / probe), bytes(out(b) / probe));
+    }
     EXPECT_EQ(bytes(out(a) / "particles/particles.hdf.series"), bytes(out(b) / "particles/particles.hdf.series"));
   }
 
@@ -138,6 +157,65 @@ TEST_F(ResumeRun, AnInterruptedLongFrameGoesOnFromItsMiddle) {
   EXPECT_EQ(resume().exit_code, 0);
   ASSERT_EQ(run("whole", slow).exit_code, 0);
   expect_equal_results("out", "whole", 2);
+}
+
+/// Emitters, a sink, a pin, a traction, probes and a thin wall that moves.
+std::string sources_text() {
+  return "[[emitter]]\nname = \"gun\"\nshape = \"box\"\nsize = [0.1, 0.1]\nposition = [0.3, 0.3]\nvelocity = [-3, 0]\n"
+         "material = \"snow\"\nmass_rate = 100\n"
+         "[[sink]]\nname = \"drain\"\nshape = \"box\"\nsize = [0.08, 0.1]\nposition = [0.05, 0.05]\n"
+         "[[collider]]\nname = \"blade\"\nshape = \"box\"\nsize = [0.008, 0.2]\nposition = [0.14, 0.12]\n"
+         "velocity = [-2, 0]\n"
+         "[[pin]]\nshape = \"disk\"\nradius = 0.04\nposition = [-0.05, 0.15]\nstart = 0.003\nstop = 0.02\n"
+         "[[traction]]\nshape = \"box\"\nsize = [1, 0.1]\nposition = [0, 0.22]\npressure = \"2e4 * t\"\n"
+         "[[probe]]\nname = \"row\"\nshape = \"line\"\nposition = [-0.2, 0.1]\nend = [0.2, 0.1]\ncount = 5\n"
+         "[[probe]]\nname = \"place\"\nposition = [0, 0.1]\n";
+}
+
+TEST_F(ResumeRun, SourcesAndProbesGoOnFromTheMiddleOfAFrame) {
+  write(scene_text() + sources_text());
+  const std::string slow = "--set limits.max_dt=1e-6 --set end_time=0.01 --set checkpoint.every_frames=0";
+  const pid_t child =
+      start("out", {"--set", "limits.max_dt=1e-6", "--set", "end_time=0.01", "--set", "checkpoint.every_frames=0"});
+  wait_for_checkpoint();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  kill(child, SIGTERM);
+  ASSERT_EQ(exit_code_of(child), 130) << bytes(folder_ / "out.err");
+  EXPECT_NE(bytes(out() / "run.json").find("\"inside_frame\": true"), std::string::npos);
+  ASSERT_EQ(resume().exit_code, 0);
+  ASSERT_EQ(run("whole", slow).exit_code, 0);
+  expect_equal_results("out", "whole", 2);
+}
+
+TEST_F(ResumeRun, SourcesAndProbesGoOnFromAFrame) {
+  write(scene_text() + sources_text());
+  ASSERT_EQ(run("whole").exit_code, 0);
+  ASSERT_EQ(run("out", "--set end_time=0.05").exit_code, 0);
+  const ProgramResult first = resume("--frames 7 --threads 2");
+  ASSERT_EQ(first.exit_code, 0) << first.errors;
+  expect_equal_results("out", "whole", 7);
+  const std::string names = bytes(out() / "stats.csv").substr(0, bytes(out() / "stats.csv").find('\n'));
+  for (const char* name : {"blade.force_x", "gun.emitted_mass", "drain.removed_particles"}) {
+    EXPECT_NE(names.find(name), std::string::npos) << names;
+  }
+  // Rows after the frame are replaced by their like; those of a run that was killed on the way are not counted twice.
+  std::ofstream(out() / "probes/row.csv", std::ios::app) << "8,0.07,0,";
+  ASSERT_EQ(resume("--from-frame 3").exit_code, 0);
+  expect_equal_results("out", "whole", 7);
+
+  for (const char* renamed : {"emitter.0.name='\"hose\"'", "sink.0.name='\"hole\"'"}) {
+    const ProgramResult refused = resume(std::string("--frames 9 --allow-changed --set ") + renamed);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_TRUE(matches(refused.errors, "firn: (emitter|sink) is .*: this cannot change on the way; .*\n"))
+        << refused.errors;
+  }
+  // Probes decide nothing; a new one begins where the run goes on.
+  write(scene_text() + sources_text() + "[[probe]]\nname = \"late\"\nposition = [0, 0.05]\n");
+  const ProgramResult more = resume("--frames 8 --scene " + quoted(folder_ / "scene.toml"));
+  EXPECT_EQ(more.exit_code, 0) << more.errors;
+  const std::string late = bytes(out() / "probes/late.csv");
+  EXPECT_EQ(std::count(late.begin(), late.end(), '\n'), 2) << late;
+  EXPECT_NE(late.find("\n8,"), std::string::npos) << late;
 }
 
 TEST_F(ResumeRun, ASecondSignalEndsAtOnce) {

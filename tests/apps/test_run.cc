@@ -73,6 +73,35 @@ std::vector<std::map<std::string, std::string>> read_table(const fs::path& path)
   return rows;
 }
 
+TEST_F(RunScene, SourcesAndProbesHaveTheirNumbers) {
+  write("scene.toml",
+        scene_text() +
+            "film = false\nevery_nth = 0\n[[emitter]]\nname = \"gun\"\nshape = \"sphere\"\nradius = 0.05\n"
+            "position = [0, 0.8, 0]\nmaterial = \"snow\"\nvelocity = [0, -1, 0]\nmass_rate = 2\n"
+            "[[sink]]\nname = \"pit\"\nshape = \"box\"\nsize = [0.1, 2, 2]\nstart = 0.05\n"
+            "[[probe]]\nname = \"column\"\nshape = \"line\"\nposition = [0.1, 0.3, 0]\n"
+            "end = [0.1, 0.9, 0]\ncount = 2\n");
+  const ProgramResult result = run();
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const ProgramResult check = run_firn("check " + quoted(out("scene.resolved.toml")));
+  EXPECT_NE(check.output.find("emitter     gun: "), std::string::npos) << check.output << check.errors;
+  const auto rows = read_table(out("stats.csv"));
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_NEAR(std::stod(rows[4].at("gun.emitted_mass")), 0.2, 0.01);
+  EXPECT_EQ(rows[1].at("pit.removed_particles"), "0");
+  EXPECT_GT(std::stod(rows[4].at("pit.removed_mass")), 1);
+  EXPECT_NEAR(std::stod(rows[4].at("mass")),
+              std::stod(rows[0].at("mass")) + std::stod(rows[4].at("gun.emitted_mass")) -
+                  std::stod(rows[4].at("pit.removed_mass")),
+              1e-3);
+  const auto values = read_table(out("probes/column.csv"));
+  ASSERT_EQ(values.size(), 10u);
+  EXPECT_NEAR(std::stod(values[0].at("density")), 400, 80);
+  EXPECT_EQ(values[0].at("velocity_y"), "-4");
+  EXPECT_EQ(values[1].at("density"), "0");
+  EXPECT_EQ(values[1].at("velocity_y"), "");
+}
+
 TEST_F(RunScene, MeshBecomesFramesPicturesFilmAndStatistics) {
   const ProgramResult result = run();
   ASSERT_EQ(result.exit_code, 0) << result.errors;

@@ -17,6 +17,66 @@ void expect_near(const Vec<double, n>& a, const Vec<double, n>& b, double tolera
   for (int i = 0; i < n; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << "component " << i;
 }
 
+/// A ball that grows while it turns about y, in its own frame.
+class GrowingBall final : public DeformingShape<3> {
+ public:
+  class Instant final : public ShapeInMotion<3> {
+   public:
+    explicit Instant(double t) : t_(t), ball_(1 + t * t) {}
+    double distance(const Vec3d& x) const override { return ball_.distance(x); }
+    Vec3d normal(const Vec3d& x) const override { return ball_.normal(x); }
+    Bounds<3> bounds() const override { return ball_.bounds(); }
+    Vec3d velocity(const Vec3d& x, double ahead) const override {
+      return 2 * (t_ + ahead) * ball_.normal(x) + cross(Vec3d{{0, 3, 0}}, ball_.normal(x));
+    }
+
+    double fastest() const override { return 2 * t_; }
+
+   private:
+    double t_;
+    Sphere<3> ball_;
+  };
+  std::shared_ptr<const ShapeInMotion<3>> at(double t) const override { return std::make_shared<Instant>(t); }
+  const std::vector<double>& times() const override { return times_; }
+
+ private:
+  std::vector<double> times_ = {0};
+};
+
+TEST(DeformingCollider, HasTheFormOfTheTimeInItsFrame) {
+  Collider<3> ball;
+  ball.deforming = std::make_shared<GrowingBall>();
+  ball.contact = Contact::sticky;
+  ball.motion.origin = {{1, 0, 0}};
+  ball.motion.rotation = rotation_by(Vec3d{{0, 0, std::numbers::pi / 2}});
+  ball.motion.velocity = {{0, 5, 0}};
+  const PosedCollider<3> posed(ball, 0.5, 0.1);
+  // Centre (1, 2.5, 0), radius 1.25; seen along world y, which is x of its frame.
+  const Vec3d x = {{1, 2.5 + 1.2, 0}};
+  EXPECT_NEAR(posed.distance(x), -0.05, 1e-14);
+  // Of the frame (0, 5, 0), of growth 2 t along y, of the turn (0, 3, 0) x (1, 0, 0) = (0, 0, -3).
+  expect_near(posed.velocity(x), {{0, 6, -3}});
+  expect_near(posed.admissible(x, {{7, 7, 7}}), {{0, 6, -3}});
+  EXPECT_NEAR(posed.fastest(x), std::hypot(6.2, 3), 1e-14) << "grows faster a tenth of a second later";
+  EXPECT_NEAR(PosedCollider<3>(ball, 0.5).fastest(x), std::hypot(6, 3), 1e-14);
+  // At another time the same place is outside.
+  EXPECT_GT(PosedCollider<3>(ball, 0).distance(x), 0);
+}
+
+TEST(DeformingCollider, ScalesWithItsFrame) {
+  Collider<3> ball;
+  ball.deforming = std::make_shared<GrowingBall>();
+  ball.contact = Contact::slip;
+  ball.keyframes = std::make_shared<KeyframeMotion<3>>(std::vector<Keyframe<3>>{{0, {}, identity<double, 3>(), 2}},
+                                                       Interpolation::linear);
+  const PosedCollider<3> posed(ball, 0.5);
+  EXPECT_NEAR(posed.distance({{3, 0, 0}}), 3 - 2.5, 1e-14);
+  expect_near(posed.velocity({{2.4, 0, 0}}), {{2, 0, -6}});
+  EXPECT_NEAR(posed.deformation_speed(), 2, 1e-14);
+  // Slip takes the part across the surface only.
+  expect_near(posed.admissible({{2.4, 0, 0}}, {{0, 1, 1}}), {{2, 1, 1}});
+}
+
 /// A resting floor at y = 0.
 template <int dim>
 Collider<dim> floor(Contact contact, double friction = 0) {

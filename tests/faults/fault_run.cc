@@ -21,10 +21,12 @@ constexpr const char* kScene =
     "[[body]]\nname = \"ball\"\nshape = \"disk\"\nradius = 0.1\nposition = [0, 0.11]\nvelocity = [0, -5]\n"
     "material = \"snow\"\n"
     "[[collider]]\nname = \"ground\"\nshape = \"half_space\"\n"
+    "[[probe]]\nname = \"place\"\nposition = [0, 0.1]\n"
     "[render]\nevery_nth = 0\n"
     "[checkpoint]\nevery_frames = 1\n";
 
 constexpr const char* kSeries = "particles/particles.hdf.series";
+constexpr const char* kProbe = "probes/place.csv";
 
 std::string frame_name(int frame) { return "particles/particles.000" + std::to_string(frame) + ".hdf"; }
 
@@ -53,7 +55,7 @@ void FaultRun::SetUp() {
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   ASSERT_EQ(ended.exit_code, 0) << ended.errors;
   for (int frame = 1; frame <= kFrames; ++frame) good_[frame_name(frame)] = bytes_of(out() / frame_name(frame));
-  good_[kSeries] = bytes_of(out() / kSeries);
+  for (const char* name : {kSeries, kProbe}) good_[name] = bytes_of(out() / name);
   for (const auto& [name, bytes] : good_) ASSERT_FALSE(bytes.empty()) << name;
   clear();
 }

@@ -140,6 +140,16 @@ TEST(Picture, AutomaticCameraSeesEverything) {
   }
 }
 
+TEST(Picture, AutomaticCameraSeesWhatIsExpected) {
+  View view = small_view();
+  view.camera.reset();
+  const Vec3d place = {{100, -40, 7}};
+  view.expected = {{place, 0.25}};
+  EXPECT_NEAR(norm(automatic_camera({}, view).target - place), 0, 1e-12);
+  view.expected.clear();
+  EXPECT_EQ(norm(automatic_camera({}, view).target), 0);
+}
+
 TEST(Picture, FlatDisksAndSolidsAreWhereTheyAre) {
   View view = small_view();
   const double meters_per_pixel = 2 * 10 * std::tan(20 * std::numbers::pi / 180) / 160;

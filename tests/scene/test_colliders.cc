@@ -153,6 +153,18 @@ TEST(SceneColliders, ThinOnesAreNamedWithTheCellSizeThatHolds) {
   EXPECT_TRUE(warnings.empty());
 }
 
+TEST(SceneColliders, KnowHowThinTheyAre) {
+  const auto thickness = [](const std::string& text) {
+    const Scene scene = parse(kMinimal + "[[collider]]\n" + text);
+    return make_collider<3>(scene, scene.colliders[0], 0.1).thickness;
+  };
+  EXPECT_NEAR(thickness("shape = \"box\"\nsize = [2, 0.1, 2]\n"), 0.1, 0.01);
+  EXPECT_NEAR(thickness("shape = \"box\"\nsize = [2, 0.1, 2]\nkeyframes = [{ time = 0, scale = 2 }, { time = 1, "
+                        "scale = 0.5 }]\n"),
+              0.05, 0.005);
+  EXPECT_TRUE(std::isinf(thickness("shape = \"half_space\"\n")));
+}
+
 struct Case {
   const char* name;
   std::string text;

@@ -106,8 +106,9 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Missing, SceneError,
     testing::Values(
-        Case{"empty", "",
-             R"(scene.toml:1:1: required and not given: end_time; resolution: cell_size or particles; a \[\[body\]\])"},
+        Case{
+            "empty", "",
+            R"(scene.toml:1:1: required and not given: end_time; resolution: cell_size or particles; a \[\[body\]\] or \[\[emitter\]\])"},
         Case{"only_comments", "# nothing\n", R"(scene.toml:1:1: required and not given: end_time; .*)"},
         Case{
             "all_at_once", "[[body]]\n[material.goo]\n[[collider]]\n",

@@ -3,13 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
+
+#include "mesh/temporary_folder.h"
 
 namespace firn {
 namespace {
 
-constexpr const char* kText =
+const std::string kText =
     "end_time = 1\nresolution.particles = 100\n[material.snow]\npreset = \"snow\"\n"
     "[[body]]\nname = \"cube\"\nmesh = \"cube.obj\"\nmaterial = \"snow\"\n"
     "[[body]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 1\nposition = [3, 0, 0]\nmaterial = \"snow\"\n"
@@ -47,6 +50,30 @@ TEST(SceneKeys, DifferencesAreToldWithBothValues) {
   EXPECT_EQ(differing_keys(keys_of(kText, {"limits.max_dt=1"}), keys_of(kText)),
             Lines{"limits.max_dt is not set and was 1"});
   EXPECT_EQ(differences({"body.1.name=\"box\""}).front(), "body is cube, box and was cube, ball");
+}
+
+TEST(SceneKeys, ProbesDecideNothingAndSinksDo) {
+  const std::string probe = "[[probe]]\nname = \"place\"\nposition = [0, 1, 0]\n";
+  EXPECT_EQ(differing_keys(keys_of(kText), keys_of(kText + probe)), Lines{});
+  const std::string sink = "[[sink]]\nname = \"drain\"\nshape = \"box\"\nsize = [1, 1, 1]\n";
+  EXPECT_EQ(differing_keys(keys_of(kText), keys_of(kText + sink)).front(), "sink is drain and was not set");
+}
+
+TEST(SceneKeys, ASequenceIsAllOfItsFiles) {
+  const TemporaryFolder folder;
+  const auto cube = std::filesystem::path(FIRN_SOURCE_DIR) / "scenes/meshes/cube.obj";
+  for (const char* name : {"flap_0001.obj", "flap_0002.obj"}) std::filesystem::copy(cube, folder / name);
+  const std::string text =
+      "end_time = 1\nresolution.particles = 100\n[material.snow]\npreset = \"snow\"\n"
+      "[[body]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 1\nposition = [3, 0, 0]\nmaterial = \"snow\"\n"
+      "[[collider]]\nname = \"flap\"\nshape = \"mesh_sequence\"\nmeshes = \"flap_####.obj\"\nfps = 10\n";
+  const auto keys = [&] { return scene_keys(parse_scene(text, folder / "scene.toml")); };
+  const auto before = keys();
+  EXPECT_EQ(before.at("collider.flap.meshes").substr(0, 30), "\"flap_0001.obj\" with the hash ");
+  EXPECT_NE(before.at("collider.flap.meshes").find(", \"flap_0002.obj\" with the hash "), std::string::npos);
+  EXPECT_EQ(differing_keys(before, keys()), Lines{});
+  std::ofstream(folder / "flap_0002.obj", std::ios::app) << "# a remark\n";
+  EXPECT_EQ(differing_keys(before, keys()).size(), 1u);
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ TEST(Schema, KeysWriteDifferentFields) {
       for (const Key& other : section.keys) before.push_back(other.get(object));
       switch (key.type) {
         case ValueType::boolean:
-          key.set(object, !std::get<bool>(*key.get(object)));
+          key.set(object, !std::get<bool>(key.get(object).value_or(false)));
           break;
         case ValueType::integer:
           key.set(object, std::int64_t(17));
@@ -69,9 +69,13 @@ TEST(Schema, KeysWriteDifferentFields) {
         case ValueType::choice:
           key.set(object, std::string(key.choices.back()));
           break;
+        case ValueType::formula:
+          key.set(object, std::vector<NumberOrFormula>{{0, "x"}});
+          break;
         case ValueType::formulas:
           key.set(object, std::vector<NumberOrFormula>{{9}, {0, "x"}, {7}});
           break;
+        case ValueType::files:
         case ValueType::texts:
           key.set(object, std::vector<std::string>{"other", "another"});
           break;
@@ -125,6 +129,15 @@ TEST(Schema, EveryDimensionalKeyHasAUnit) {
                                       "collider.scale",
                                       "collider.friction",
                                       "collider.color",
+                                      "emitter.scale",
+                                      "emitter.color",
+                                      "sink.scale",
+                                      "field.axis",
+                                      "pin.normal",
+                                      "pin.axis",
+                                      "pin.scale",
+                                      "traction.scale",
+                                      "traction.normal",
                                       "camera.up",
                                       "render.range"};
   for (const Section& section : schema()) {

@@ -52,9 +52,12 @@ bool valid_object(const Json& schema, const Json& value) {
 
 /// The part of JSON Schema that scene_json_schema() uses.
 bool valid(const Json& schema, const Json& value) {
-  if (schema.contains("anyOf")) {
-    return std::ranges::any_of(schema["anyOf"], [&](const Json& option) { return valid(option, value); });
+  if (schema.contains("anyOf") &&
+      !std::ranges::any_of(schema["anyOf"], [&](const Json& option) { return valid(option, value); })) {
+    return false;
   }
+  // An option of an object may be no more than keys that it asks for.
+  if (!schema.contains("type")) return !value.is_object() || valid_object(schema, value);
   const std::string type = schema["type"];
   if (type == "boolean") return value.is_boolean();
   if (type == "string") {

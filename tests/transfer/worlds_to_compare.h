@@ -97,10 +97,10 @@ World<Real, dim> comparison_world(Layout layout, const TransferSettings& setting
   World<Real, dim> world(kCell, settings, period);
   world.gravity = gravity<dim>();
   if (with_body_force) {
-    world.body_force = [](const Vec<double, dim>& x, std::uint32_t id, double t) {
-      Vec<double, dim> a = {};
-      a[0] = 20 * std::sin(5 * x[1] + t);
-      a[1] = id % 2 == 0 ? 10.0 : -10.0;
+    world.body_force = [](const Vec<double, dim>& x, const Vec<double, dim>& v, std::uint32_t id, double t) {
+      Vec<double, dim> a = -3.0 * v;
+      a[0] += 20 * std::sin(5 * x[1] + t);
+      a[1] += id % 2 == 0 ? 10.0 : -10.0;
       return a;
     };
   }

@@ -76,6 +76,7 @@ class FakeSimulation final : public Simulation {
     snapshot.columns.push_back({"position", "m", "", 3, std::vector<float>{0, 0, 0}});
     return snapshot;
   }
+  std::vector<ProbeValue> probe(std::span<const Vec3d>) const override { return {}; }
   Totals totals() const override { return {}; }
   VerbTimes verb_times() const override { return {}; }
   std::uint64_t hash() const override { return 0; }

@@ -8,6 +8,7 @@
 #include <firn/simulation/simulation.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -33,8 +34,8 @@ Calibration calibrate(const Scene& scene, const WorldPlan& plan) {
   Scene small = scene;
   small.resolution.cell_size.reset();
   small.resolution.particles = std::min(plan.particles, kCalibrationParticles);
-  // A coarser grid would break periodic lengths of a whole number of blocks.
-  if (norm(scene.method.periodic) > 0) small = scene;
+  // A coarser grid would break periodic lengths of a whole number of blocks, and needs bodies to be found from.
+  if (norm(scene.method.periodic) > 0 || scene.bodies.empty()) small = scene;
   const LogSink sink = set_log_sink({});  // the meshes were judged once already
   const auto simulation = Simulation::create(small);
   Calibration calibration;
@@ -77,19 +78,28 @@ void check_scene(const SceneOptions& options) {
   const WorldPlan plan = plan_world(scene);
   const Calibration calibration = calibrate(scene, plan);
   const int precision = scene.precision == Scene::Precision::single ? 0 : 1;
-  const auto particles = static_cast<double>(plan.particles);
+  double emitted = 0;
+  for (const EmitterSettings& emitter : scene.emitters) emitted += emitted_particles(scene, emitter, plan);
+  // On the average over the run, as if nothing went down a sink.
+  const double particles = static_cast<double>(plan.particles) + 0.5 * emitted;
   const double dt = calibration.dt_cells * plan.cell_size;
   const double frames = std::floor(scene.end_time * scene.frame_rate) + 1;
   const double steps = std::ceil(scene.end_time / dt);
   // A checkpoint is gathered and then laid out as a file before it is written.
-  const double memory = particles * kBytesPerParticle[precision] + 2 * checkpoint_bytes(scene, plan);
+  const double memory = (particles + 0.5 * emitted) * kBytesPerParticle[precision] + 2 * checkpoint_bytes(scene, plan);
   fmt::print("{} is fine\n", options.file);
   fmt::print("  cell size   {:.4g} m\n", plan.cell_size);
   for (const WorldPlan::Body& body : plan.bodies) {
     fmt::print("  body        {}: {} particles, {:.4g} {}, {:.1f} cells wide\n", body.name, body.particles, body.volume,
                scene.dimension == 3 ? "m^3" : "m^2", body.width_in_cells);
   }
-  fmt::print("  particles   {}\n", plan.particles);
+  for (const EmitterSettings& emitter : scene.emitters) {
+    fmt::print("  emitter     {}: {}\n", emitter.name,
+               emitter.keep_full ? "keeps its shape full, not counted here"
+                                 : fmt::format("{:.0f} particles", emitted_particles(scene, emitter, plan)));
+  }
+  fmt::print("  particles   {:.0f}{}\n", static_cast<double>(plan.particles) + emitted,
+             emitted > 0 ? " at the end" : "");
   fmt::print("  memory      {:.2f} GiB of {:.1f} GiB\n", memory / 0x1p30, static_cast<double>(total_memory()) / 0x1p30);
   fmt::print("  disk        {:.2f} GiB for {} frames\n",
              frames * particles * kFrameBytesPerParticle[precision] / 0x1p30, frames);

@@ -1,6 +1,7 @@
 #include <firn/apps/commands.h>
 #include <firn/apps/machine.h>
 #include <firn/core/simd.h>
+#include <firn/io/vdb_file.h>
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
@@ -59,6 +60,7 @@ void run_doctor() {
   line("ffmpeg",
        ffmpeg.empty() ? "missing: pictures are made, but no films; install the package ffmpeg" : ffmpeg.string());
   line("hdf5", hdf5_version());
+  line("openvdb", openvdb_version());
   line("embree", embree_version());
   line("tbb", TBB_runtime_version());
 }

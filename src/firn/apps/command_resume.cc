@@ -56,10 +56,10 @@ std::vector<std::string> differences(const Checkpoint& checkpoint, const Scene& 
   return lines;
 }
 
-/// Keys without which numbers of frames, bodies or materials would mean something else.
+/// Keys without which numbers of frames, bodies or materials, or what was counted so far, would mean something else.
 void refuse_unchangeable(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) {
-    for (const std::string_view key : {"frame_rate", "body", "emitter", "material"}) {
+    for (const std::string_view key : {"frame_rate", "body", "emitter", "sink", "material"}) {
       if (!line.starts_with(std::string(key) + " is ")) continue;
       throw Error(ErrorKind::usage,
                   fmt::format("{}: this cannot change on the way; run the scene anew into another folder", line));
@@ -125,6 +125,7 @@ void resume(const ResumeOptions& options) {
   remove_unlisted_checkpoints(folder, info);
   make_folder(folder.particles());
   if (scene.render.every_nth > 0) make_folder(folder.images());
+  if (!scene.probes.empty()) make_folder(folder.probes());
   write_scene(scene, folder);
   info.status = "running";
   info.threads = scene.threads > 0 ? scene.threads : tbb::info::default_concurrency();

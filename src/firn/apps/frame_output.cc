@@ -5,6 +5,7 @@
 #include <firn/io/frame_series.h>
 #include <firn/io/frame_writer.h>
 #include <firn/io/stats_table.h>
+#include <firn/scene/probe_points.h>
 #include <firn/scene/resolved.h>
 #include <fmt/format.h>
 
@@ -48,14 +49,54 @@ StatsRow row_of(const FinishedFrame& frame) {
   row.max_J = totals.max_J;
   row.wall_seconds = frame.report.wall_seconds;
   row.further = {static_cast<double>(frame.report.parked)};
+  for (const ColliderReport& collider : frame.report.colliders) {
+    for (const double f : collider.force.e) row.further.push_back(f);
+    for (const double m : collider.torque.e) row.further.push_back(m);
+    row.further.push_back(static_cast<double>(collider.inside.particles));
+    row.further.push_back(collider.inside.depth);
+    row.further.push_back(static_cast<double>(collider.caught));
+  }
+  for (const auto* counts : {&frame.report.emitted, &frame.report.removed}) {
+    for (const SourceCount& count : *counts) {
+      row.further.push_back(static_cast<double>(count.particles));
+      row.further.push_back(count.mass);
+    }
+  }
   return row;
 }
 
-const std::vector<std::string> kFurtherColumns = {"parked"};
+std::vector<std::string> further_columns(const Scene& scene) {
+  std::vector<std::string> names = {"parked"};
+  for (const ColliderSettings& collider : scene.colliders) {
+    for (const char* column :
+         {"force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z", "inside", "depth", "caught"}) {
+      names.push_back(fmt::format("{}.{}", collider.name, column));
+    }
+  }
+  const auto add = [&](const auto& objects, const char* what) {
+    for (const auto& object : objects) {
+      names.push_back(fmt::format("{}.{}_particles", object.name, what));
+      names.push_back(fmt::format("{}.{}_mass", object.name, what));
+    }
+  };
+  add(scene.emitters, "emitted");
+  add(scene.sinks, "removed");
+  return names;
+}
 
-StatsTable stats_of(const RunFolder& folder, const FrameHistory& history) {
-  if (history.frames == 0) return StatsTable(folder.stats(), kFurtherColumns);
-  return StatsTable::resume(folder.stats(), kFurtherColumns, history.frames, history.keeps_later);
+StatsTable stats_of(const Scene& scene, const RunFolder& folder, const FrameHistory& history) {
+  if (history.frames == 0) return StatsTable(folder.stats(), further_columns(scene));
+  return StatsTable::resume(folder.stats(), further_columns(scene), history.frames, history.keeps_later);
+}
+
+std::vector<ProbeTable> probes_of(const Scene& scene, const RunFolder& folder, const FrameHistory& history) {
+  std::vector<ProbeTable> tables;
+  for (const ProbeSettings& probe : scene.probes) {
+    const std::filesystem::path path = folder.probe(probe.name);
+    tables.push_back(history.frames == 0 ? ProbeTable(path)
+                                         : ProbeTable::resume(path, history.frames, history.keeps_later));
+  }
+  return tables;
 }
 
 /// The frames that are there, by number. Those that a changed scene makes wrong are removed.
@@ -90,8 +131,22 @@ std::map<std::int64_t, SeriesFrame> frames_of(const Scene& scene, const RunFolde
 
 }  // namespace
 
+std::vector<std::vector<ProbeRow>> probe_rows(const Simulation& simulation) {
+  std::vector<std::vector<ProbeRow>> all;
+  for (const ProbeSettings& probe : simulation.scene().probes) {
+    const std::vector<Vec3d> points = probe_points(probe);
+    const std::vector<ProbeValue> values = simulation.probe(points);
+    std::vector<ProbeRow>& rows = all.emplace_back();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      rows.push_back({points[i], values[i].density, values[i].velocity, values[i].pressure});
+    }
+  }
+  return all;
+}
+
 struct FrameOutput::Files {
   StatsTable stats;
+  std::vector<ProbeTable> probes;
   FrameMetadata metadata;
   std::map<std::int64_t, SeriesFrame> frames = {};
 
@@ -107,7 +162,8 @@ FrameOutput::FrameOutput(const Scene& scene, const RunFolder& folder, const Fram
       drawing_(scene_),
       folder_(folder),
       history_(history),
-      files_(new Files{stats_of(folder, history), metadata_of(scene), frames_of(scene, folder, history)}) {
+      files_(new Files{stats_of(scene_, folder, history), probes_of(scene_, folder, history), metadata_of(scene),
+                       frames_of(scene, folder, history)}) {
   if (history.frames > 0) files_->write_series(folder);
   if (scene.render.film && scene.render.every_nth > 0) {
     if (program_exists("ffmpeg")) {
@@ -143,6 +199,7 @@ void FrameOutput::wait() {
   changed_.wait(lock, [&] { return (queue_.empty() && !busy_) || failure_ != nullptr; });
   if (failure_ != nullptr) std::rethrow_exception(failure_);
   files_->stats.sync();
+  for (const ProbeTable& probe : files_->probes) probe.sync();
 }
 
 void FrameOutput::finish() {
@@ -192,6 +249,9 @@ void FrameOutput::write(const FinishedFrame& frame) {
   files_->frames[frame.report.frame] = {name, frame.snapshot.time};
   files_->write_series(folder_);
   files_->stats.append(row_of(frame));
+  for (std::size_t i = 0; i < files_->probes.size(); ++i) {
+    files_->probes[i].append(frame.report.frame, frame.report.time, frame.probes[i]);
+  }
 }
 
 Image FrameOutput::draw(const Snapshot& snapshot) {

@@ -2,6 +2,7 @@
 
 #include <firn/apps/run_folder.h>
 #include <firn/apps/scene_view.h>
+#include <firn/io/probe_table.h>
 #include <firn/render/film.h>
 #include <firn/render/scene_view.h>
 #include <firn/simulation/simulation.h>
@@ -22,6 +23,7 @@ struct FinishedFrame {
   Snapshot snapshot;
   FrameReport report;
   Totals totals;
+  std::vector<std::vector<ProbeRow>> probes = {};  ///< of each probe of the scene
 };
 
 /// What a run that goes on finds in its folder.
@@ -29,6 +31,9 @@ struct FrameHistory {
   std::int64_t frames = 0;  ///< those up to here stay as they are
   bool keeps_later = true;  ///< whether what is later stays listed until it is replaced by its like
 };
+
+/// The rows of the scene's probes at the frame that the simulation stands at.
+std::vector<std::vector<ProbeRow>> probe_rows(const Simulation& simulation);
 
 /// Writes frames, the row of statistics, pictures and the film in a thread of its own, while the next frame is
 /// computed.

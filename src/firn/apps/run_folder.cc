@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> results_of(const RunFolder& folder) {
-  return {folder.particles(), folder.images(),   folder.film(),       folder.stats(),
-          folder.scene(),     folder.run_info(), folder.checkpoints()};
+  return {folder.particles(), folder.images(), folder.film(),     folder.stats(),
+          folder.probes(),    folder.scene(),  folder.run_info(), folder.checkpoints()};
 }
 
 }  // namespace
@@ -52,12 +52,14 @@ RunFolder prepare_run_folder(const Scene& scene, bool force) {
   remove_part_files(folder);
   make_folder(folder.particles());
   if (scene.render.every_nth > 0) make_folder(folder.images());
+  if (!scene.probes.empty()) make_folder(folder.probes());
   write_file_atomically(folder.scene(), resolved_toml(scene, folder.root));
   return folder;
 }
 
 void remove_part_files(const RunFolder& folder) {
-  for (const fs::path& place : {folder.root, folder.particles(), folder.images(), folder.checkpoints()}) {
+  for (const fs::path& place :
+       {folder.root, folder.particles(), folder.images(), folder.probes(), folder.checkpoints()}) {
     std::vector<fs::path> parts;
     std::error_code error;
     for (fs::directory_iterator entry(place, error), end; !error && entry != end; entry.increment(error)) {

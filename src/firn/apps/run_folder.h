@@ -19,6 +19,8 @@ struct RunFolder {
   std::filesystem::path checkpoints() const { return root / "checkpoints"; }
   std::filesystem::path film() const { return root / "film.mp4"; }
   std::filesystem::path stats() const { return root / "stats.csv"; }
+  std::filesystem::path probes() const { return root / "probes"; }
+  std::filesystem::path probe(const std::string& name) const { return probes() / (name + ".csv"); }
   std::filesystem::path scene() const { return root / "scene.resolved.toml"; }
   std::filesystem::path run_info() const { return root / "run.json"; }
   std::filesystem::path lock() const { return root / "run.lock"; }

@@ -51,7 +51,7 @@ class FrameLoop {
   }
 
   void hand_over(const FrameReport& report) {
-    output_.submit({job_.simulation.snapshot(), report, job_.simulation.totals()});
+    output_.submit({job_.simulation.snapshot(), report, job_.simulation.totals(), probe_rows(job_.simulation)});
     print_line(progress_.line(report));
     job_.info.frames = report.frame;
     job_.info.particles = report.particles;
@@ -101,6 +101,7 @@ void print_results(const RunJob& job, bool has_film) {
   if (job.scene.render.every_nth > 0) print_line(fmt::format("  pictures  {}", folder.images().string()));
   if (has_film) print_line(fmt::format("  film      {}", folder.film().string()));
   print_line(fmt::format("  numbers   {}", folder.stats().string()));
+  if (!job.scene.probes.empty()) print_line(fmt::format("  probes    {}", folder.probes().string()));
 }
 
 }  // namespace

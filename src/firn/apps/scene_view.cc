@@ -1,5 +1,7 @@
 #include <firn/apps/scene_view.h>
+#include <firn/geometry/deforming_mesh.h>
 #include <firn/scene/collider_shape.h>
+#include <firn/scene/deforming_collider.h>
 
 #include <algorithm>
 #include <cmath>
@@ -51,6 +53,14 @@ ShapeSurface drawn_surface(const Scene& scene, const ColliderSettings& settings,
   return surface_of(*shape, drawn_space<3>(scene), kSurfaceCells);
 }
 
+/// A solid that changes its form, at time t.
+ShapeSurface drawn_surface(const Scene& scene, const DeformingShape<3>& shape, bool inverted, double t) {
+  if (const auto* mesh = dynamic_cast<const DeformingMesh*>(&shape); mesh != nullptr && !inverted) {
+    return surface_of(mesh->sequence().mesh_at(t));
+  }
+  return surface_of(*shape.at(t), drawn_space<3>(scene), kSurfaceCells);
+}
+
 ShapeSurface drawn_surface(const Scene& scene, const ColliderSettings&, const ShapePointer<2>& section) {
   return filled_section_of(*section, drawn_space<2>(scene));
 }
@@ -87,8 +97,13 @@ template <int dim>
 void SceneDrawing::add(const ColliderSettings& settings) {
   Collider<dim> moving;
   set_motion<dim>(scene_, settings, moving);
-  Drawn drawn = {&settings, [moving](double t) { return in_space(moving.pose_at(t)); }, {}};
-  if (!has_own_kind(settings)) {
+  Drawn drawn = {&settings, [moving](double t) { return in_space(moving.pose_at(t)); }, {}, {}, {}, {}};
+  if (settings.is_sequence()) {
+    drawn.deforming = deforming_shape(scene_, settings);
+    drawn.solid.color = drawn_color(settings.color);
+    drawn.solid.endless = settings.inverted;
+    drawn.solid.glass = settings.look == ColliderSettings::Look::glass;
+  } else if (!has_own_kind(settings)) {
     ShapePointer<dim> shape;
     if constexpr (dim == 2) {
       shape = collider_shape<2>(scene_, settings, 0);
@@ -120,13 +135,25 @@ View SceneDrawing::view_at(double t) const {
   for (const BodySettings& body : scene.bodies) {
     if (body.color) view.body_colors[body.name] = drawn_color(body.color);
   }
+  for (const EmitterSettings& emitter : scene.emitters) {
+    if (emitter.color) view.body_colors[emitter.name] = drawn_color(emitter.color);
+    if (!emitter.shape) continue;
+    const double radius = emitter.scale * std::max(emitter.radius, 0.5 * norm(emitter.size));
+    if (emitter.keyframes.empty()) view.expected.emplace_back(emitter.position, radius);
+    for (const KeyframeSettings& frame : emitter.keyframes) view.expected.emplace_back(*frame.position, radius);
+  }
   for (const Drawn& drawn : colliders_) {
     const Pose<3> pose = drawn.pose_at(t);
-    if (!drawn.solid.surface) {
+    if (drawn.deforming && drawn.form_time != t) {
+      drawn.form = std::make_shared<ShapeSurface>(drawn_surface(scene_, *drawn.deforming, drawn.settings->inverted, t));
+      drawn.form_time = t;
+    }
+    if (!drawn.solid.surface && !drawn.deforming) {
       draw_own_kind(*drawn.settings, pose, view);
       continue;
     }
     DrawnSolid& solid = view.solids.emplace_back(drawn.solid);
+    if (drawn.deforming) solid.surface = drawn.form;
     solid.origin = pose.origin;
     solid.rotation = pose.rotation;
     solid.scale = pose.scale;

@@ -1,4 +1,5 @@
 #include <firn/core/error.h>
+#include <firn/geometry/hermite.h>
 #include <firn/geometry/keyframe_motion.h>
 #include <fmt/format.h>
 
@@ -43,19 +44,6 @@ Vec3d rate_of(const Vec3d& theta, const Vec3d& omega) {
   const double c = angle < 1e-2 ? 1.0 / 12 + squared / 720 : 1 / squared - 0.5 / (angle * std::tan(0.5 * angle));
   const Mat3d k = cross_matrix(theta);
   return omega + (-0.5) * (k * omega) + c * (k * (k * omega));
-}
-
-/// Cubic Hermite weights at u in [0, 1] on an interval of length h: values and, with `rate`, their time derivatives.
-struct Hermite {
-  double v0, v1, m0, m1;
-};
-Hermite hermite(double u, double h) {
-  const double w = 1 - u;
-  return {w * w * (1 + 2 * u), u * u * (3 - 2 * u), h * u * w * w, -h * u * u * w};
-}
-Hermite hermite_rate(double u, double h) {
-  const double w = 1 - u;
-  return {-6 * u * w / h, 6 * u * w / h, w * (1 - 3 * u), u * (3 * u - 2)};
 }
 
 /// The tangent between two slopes that keeps a Hermite cubic monotone on both sides.
@@ -124,8 +112,7 @@ typename KeyframeMotion<dim>::Tangent KeyframeMotion<dim>::tangent_at(std::size_
   if (k == 0 || k + 1 == keyframes_.size()) return {};
   const Keyframe<dim>&a = keyframes_[k - 1], &b = keyframes_[k], &c = keyframes_[k + 1];
   const double before = b.time - a.time, after = c.time - b.time;
-  // The slope at b of the parabola through the three: the nearer keyframe counts more.
-  const double from_before = after / (before + after) / before, from_after = before / (before + after) / after;
+  const auto [from_before, from_after] = MiddleSlope(before, after);
   Tangent tangent;
   tangent.velocity = from_before * (b.position - a.position) + from_after * (c.position - b.position);
   tangent.angular_velocity = from_before * turns_[k - 1] + from_after * turns_[k];

@@ -1,3 +1,4 @@
+#include <firn/core/parallel.h>
 #include <firn/geometry/triangle_bvh.h>
 
 #include <numeric>
@@ -39,9 +40,33 @@ TriangleBvh::TriangleBvh(const TriangleMesh& mesh) : order_(mesh.triangles.size(
     nodes_.push_back({{}, begin, half, 0});
     nodes_.push_back({{}, half, end, 0});
   }
+  place_triangles(mesh);
+}
+
+void TriangleBvh::place_triangles(const TriangleMesh& mesh) {
   triangles_.resize(order_.size());
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    triangles_[i] = {mesh.corner(order_[i], 0), mesh.corner(order_[i], 1), mesh.corner(order_[i], 2)};
+  parallel_chunks(order_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      triangles_[i] = {mesh.corner(order_[i], 0), mesh.corner(order_[i], 1), mesh.corner(order_[i], 2)};
+    }
+  });
+}
+
+void TriangleBvh::refit(const TriangleMesh& mesh) {
+  place_triangles(mesh);
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    Node& node = nodes_[n];
+    node.box = {};
+    if (node.first_child == 0) {
+      for (std::uint32_t i = node.begin; i < node.end; ++i) {
+        for (const Vec3d& corner : triangles_[i]) node.box.include(corner);
+      }
+      continue;
+    }
+    for (std::uint32_t child = node.first_child; child < node.first_child + 2; ++child) {
+      node.box.include(nodes_[child].box.lower);
+      node.box.include(nodes_[child].box.upper);
+    }
   }
 }
 

@@ -25,6 +25,10 @@ class TriangleBvh {
 
   explicit TriangleBvh(const TriangleMesh& mesh);
 
+  /// Boxes and corners for the same triangles with vertices elsewhere. The grouping stays: good as long as neighbours
+  /// remain neighbours.
+  void refit(const TriangleMesh& mesh);
+
   const std::vector<Node>& nodes() const { return nodes_; }
   /// The corners, in the order of the tree.
   const std::vector<Triangle>& triangles() const { return triangles_; }
@@ -32,6 +36,8 @@ class TriangleBvh {
   std::uint32_t mesh_index(std::uint32_t i) const { return order_[i]; }
 
  private:
+  void place_triangles(const TriangleMesh& mesh);
+
   std::vector<Node> nodes_;
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> order_;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <firn/integrators/block_colliders.h>
+#include <firn/integrators/particle_contact.h>
 #include <firn/integrators/step.h>
+#include <firn/integrators/wall_pass.h>
 #include <firn/materials/update_stress.h>
 #include <firn/transfer/gather.h>
 
@@ -29,6 +31,7 @@ struct BlockReport {
   double wave_speed = 0;                          ///< m/s
   double kinematic_viscosity = 0;                 ///< m^2/s
   std::unique_ptr<ParticleFailure> failure = {};  ///< the block's first
+  std::vector<ColliderLoad> loads = {};           ///< of each collider, if any is near
 
   /// Notes the failure of particle p of these columns, unless there is one already.
   template <class Real, int dim>
@@ -36,16 +39,18 @@ struct BlockReport {
                     std::uint32_t p, const BlockPlace<dim>& where, std::string_view cause);
 };
 
-/// Puts the reports of all blocks into the material's speeds and the step's report.
+/// Puts the reports of all blocks into the material's speeds, the loads of colliders and the step's report.
 template <class Real, int dim>
-void combine(MaterialSet<Real, dim>& material, std::vector<BlockReport>& blocks, bool speeds, bool waves,
+void combine(World<Real, dim>& world, std::size_t m, std::vector<BlockReport>& blocks, bool speeds, bool waves,
              StepReport& report) {
+  MaterialSet<Real, dim>& material = world.materials[m];
   double max_speed = 0, wave_speed = 0, viscosity = 0;
   for (BlockReport& block : blocks) {
     max_speed = std::max(max_speed, block.max_speed);
     wave_speed = std::max(wave_speed, block.wave_speed);
     viscosity = std::max(viscosity, block.kinematic_viscosity);
     if (block.failure && !report.failure) report.failure = *block.failure;
+    add_loads(block.loads, world.collider_loads);
   }
   if (speeds) material.max_speed = max_speed;
   if (waves) {
@@ -92,26 +97,33 @@ void BlockReport::note_failure(const World<Real, dim>& world, std::size_t materi
   for (int e = 0; e < dim * dim; ++e) failure->strain.push_back(static_cast<double>(columns.strain[e][p]));
 }
 
-/// Applies the colliders near a block to its particles' velocities.
+/// Applies the colliders near a block to its particles, and counts the momentum that they take.
 template <class Real, int dim>
 class ColliderConstraint final : public ParticleConstraint<Real, dim> {
  public:
-  ColliderConstraint(const Grid<Real, dim>& grid, const Index<dim>& origin,
-                     std::span<const PosedCollider<dim>* const> colliders)
-      : grid_(grid), origin_(origin), colliders_(colliders) {}
+  ColliderConstraint(const World<Real, dim>& world, double dt, const Index<dim>& origin,
+                     std::span<const StepCollider<dim>* const> colliders)
+      : grid_(world.grid), origin_(origin), contact_(world, dt, colliders) {}
+
+  /// Where to count from now on; one load for each collider of the world.
+  void count_in(std::vector<ColliderLoad>& loads) { loads_ = &loads; }
 
   void apply(const ParticleColumns<Real, dim>& particles, std::uint32_t first, std::uint32_t count,
              Real* const (&v)[dim], Real* const (&u)[dim]) const override {
     for (std::uint32_t lane = 0; lane < count; ++lane) {
-      const auto x = position_in_block<Real, dim>(particles, first + lane, origin_, grid_.dx(), grid_.kernel());
-      for (const PosedCollider<dim>* collider : colliders_) {
-        if (!(collider->distance(x) < 0)) continue;
-        for (Real* const(*velocity)[dim] : {&v, &u}) {
-          Vec<double, dim> w;
-          for (int i = 0; i < dim; ++i) w[i] = (*velocity)[i][lane];
-          w = collider->admissible(x, w);
-          for (int i = 0; i < dim; ++i) (*velocity)[i][lane] = static_cast<Real>(w[i]);
-        }
+      MovingParticle<dim> particle = {
+          position_in_block<Real, dim>(particles, first + lane, origin_, grid_.dx(), grid_.kernel()),
+          static_cast<double>(particles.mass[first + lane]),
+          {},
+          {}};
+      for (int i = 0; i < dim; ++i) {
+        particle.v[i] = static_cast<double>(v[i][lane]);
+        particle.u[i] = static_cast<double>(u[i][lane]);
+      }
+      if (!contact_.apply(particle, *loads_)) continue;
+      for (int i = 0; i < dim; ++i) {
+        v[i][lane] = static_cast<Real>(particle.v[i]);
+        u[i][lane] = static_cast<Real>(particle.u[i]);
       }
     }
   }
@@ -119,17 +131,41 @@ class ColliderConstraint final : public ParticleConstraint<Real, dim> {
  private:
   const Grid<Real, dim>& grid_;
   const Index<dim>& origin_;
-  std::span<const PosedCollider<dim>* const> colliders_;
+  ParticleContact<Real, dim> contact_;
+  std::vector<ColliderLoad>* loads_ = nullptr;
+};
+
+/// What corrects the particles of a block after G2P: first that they do not see all of their nodes, then colliders.
+template <class Real, int dim>
+class BlockConstraint final : public ParticleConstraint<Real, dim> {
+ public:
+  /// @param walls, colliders may be null
+  BlockConstraint(WallGather<Real, dim>* walls, const ColliderConstraint<Real, dim>* colliders)
+      : walls_(walls), colliders_(colliders) {}
+
+  void apply(const ParticleColumns<Real, dim>& particles, std::uint32_t first, std::uint32_t count,
+             Real* const (&v)[dim], Real* const (&u)[dim]) const override {
+    if (walls_ != nullptr) walls_->apply(particles, first, count, v, u);
+    if (colliders_ != nullptr) colliders_->apply(particles, first, count, v, u);
+  }
+
+ private:
+  WallGather<Real, dim>* walls_;
+  const ColliderConstraint<Real, dim>* colliders_;
 };
 
 /// Everything that G2P needs of one block of the grid, whichever material it is for.
 template <class Real, int dim>
 class BlockNodes {
  public:
-  BlockNodes(const World<Real, dim>& world, const BlockColliders<dim>& colliders, std::size_t b)
+  BlockNodes(const World<Real, dim>& world, const BlockColliders<dim>& colliders, const ThinColliders<dim>& thin,
+             double dt, std::size_t b)
       : origin_(block_origin<dim>(world.grid.particle_blocks()[b])),
-        near_(colliders.near(world.grid.particle_blocks()[b], cell_offset(world.grid.kernel()))),
-        constraint_(world.grid, origin_, near_) {
+        near_(colliders.near(world.grid.particle_blocks()[b], cell_offset(world.grid.kernel()),
+                             dt * fastest_node(world, b))),
+        constraint_(world, dt, origin_, near_),
+        walls_(world, thin, b, velocity_, change_),
+        corrections_(walls_.empty() ? nullptr : &walls_, near_.empty() ? nullptr : &constraint_) {
     load(
         world.grid, b, [&](std::size_t g) { return world.grid.nodes(g); }, velocity_);
     if (world.grid.has_velocity_change()) {
@@ -143,13 +179,28 @@ class BlockNodes {
   const Index<dim>& origin() const { return origin_; }
 
   /// @param first_place place in the block of the first particle that is gathered
-  GatherTask<Real, dim> task(const World<Real, dim>& world, double dt, std::uint32_t first_place) const {
+  /// @param loads what colliders take from the particles is added here; stays empty where none is near
+  GatherTask<Real, dim> task(const World<Real, dim>& world, double dt, std::uint32_t first_place,
+                             std::vector<ColliderLoad>& loads) {
+    if (!near_.empty()) {
+      loads.resize(world.colliders.size());
+      constraint_.count_in(loads);
+    }
     return {velocity_, change_,        world.grid.dx(),
             dt,        world.transfer, world.grid.period(),
-            origin_,   first_place,    near_.empty() ? nullptr : &constraint_};
+            origin_,   first_place,    near_.empty() && walls_.empty() ? nullptr : &corrections_};
   }
 
  private:
+  /// Speed of the fastest node that the block's particles touch: u is a mean of their velocities.
+  static double fastest_node(const World<Real, dim>& world, std::size_t b) {
+    double speed = 0;
+    for (int o = 0; o < kReach<dim>; ++o) {
+      speed = std::max(speed, world.block_speeds[static_cast<std::size_t>(world.grid.node_block_of(b, o))]);
+    }
+    return speed;
+  }
+
   /// Copies the node values that the block's particles touch into one tile. Nodes at the end of rows that belong to no
   /// cell are zero: they are read with weight zero.
   template <class NodesOf>
@@ -181,8 +232,10 @@ class BlockNodes {
 
   static constexpr int kLargestTile = tile_nodes<dim>(Kernel::cubic) * kNodeWidth;
   Index<dim> origin_;
-  std::vector<const PosedCollider<dim>*> near_;
+  std::vector<const StepCollider<dim>*> near_;
   ColliderConstraint<Real, dim> constraint_;
+  WallGather<Real, dim> walls_;
+  BlockConstraint<Real, dim> corrections_;
   alignas(64) Real velocity_[kLargestTile];
   alignas(64) Real change_[kLargestTile];
 };
@@ -207,7 +260,9 @@ void evaluate_body_force(const World<Real, dim>& world, const ParticleColumns<Re
   for (std::uint32_t p = 0; p < count; ++p) {
     if (columns.cell[p] == kNoCell) continue;
     const auto x = position_in_block<Real, dim>(columns, p, origin, world.grid.dx(), world.grid.kernel());
-    const auto a = world.body_force(x, columns.id[p], t);
+    Vec<double, dim> v;
+    for (int i = 0; i < dim; ++i) v[i] = columns.velocity[i][p];
+    const auto a = world.body_force(x, v, columns.id[p], t);
     for (int i = 0; i < dim; ++i) columns.acceleration[i][p] = static_cast<Real>(a[i]);
   }
 }

@@ -21,12 +21,16 @@ ParticleStorage passing_storage(const ParticleLayout& layout) {
 template <class Real, int dim>
 class Pass {
  public:
-  Pass(World<Real, dim>& world, std::size_t m, const BlockColliders<dim>& colliders, double dt, double next_dt)
+  /// @param thin, next_thin thin colliders at the beginning of this step and of the next one
+  Pass(World<Real, dim>& world, std::size_t m, const BlockColliders<dim>& colliders, const ThinColliders<dim>& thin,
+       const ThinColliders<dim>& next_thin, double dt, double next_dt)
       : world_(world),
         m_(m),
         material_(world.materials[m]),
         particles_(material_.particles),
         colliders_(colliders),
+        thin_(thin),
+        next_thin_(next_thin),
         dt_(dt),
         next_dt_(next_dt),
         gather_(gather_function<Real, dim>(world.transfer)),
@@ -39,7 +43,8 @@ class Pass {
     if (m_ == 0) std::fill_n(grid.tile(b), grid.tile_size() * static_cast<std::size_t>(grid.layers()), Real(0));
     if (material_.block_at[b] < 0) return;
     const auto own = static_cast<std::size_t>(material_.block_at[b]);
-    const BlockNodes<Real, dim> nodes(world_, colliders_, b);
+    BlockNodes<Real, dim> nodes(world_, colliders_, thin_, dt_, b);
+    WallScatter<Real, dim> walls(world_, next_thin_, grid.particle_blocks()[b]);
     const std::uint32_t particles = particles_.block_size(own);
     const ParticleStorage passing = passing_storage(particles_.layout());
     std::vector<Leaver>& leavers = particles_.leavers(own);
@@ -50,13 +55,13 @@ class Pass {
       const auto columns = particles_.columns(own, first, passing);
       particles_.prefetch_kept(own, first + kChunk);
       const std::size_t left_before = leavers.size();
-      const GatherReport gathered = gather_(columns, count, nodes.task(world_, dt_, first), leavers);
+      const GatherReport gathered = gather_(columns, count, nodes.task(world_, dt_, first, report.loads), leavers);
       const StressReport updated =
           update_(material_.parameters, material_columns<Real, dim>(columns, particles_.history_count()), 0, count,
                   static_cast<Real>(dt_));
       if (leavers.size() > left_before) particles_.send(own, left_before, passing);
       note(columns, gathered, updated, {nodes.origin(), leavers, first}, report);
-      scatter_chunk(columns, count, nodes.origin(), grid.tile(b));
+      scatter_chunk(columns, count, nodes.origin(), walls, grid.tile(b));
     }
     particles_.close_gaps_of_kept(own);
   }
@@ -67,9 +72,10 @@ class Pass {
     const ParticleStorage passing = passing_storage(particles_.layout());
     Real* tile = world_.grid.tile_of(particles_.block_key(b));
     const Index<dim> origin = block_origin<dim>(particles_.block_key(b));
+    WallScatter<Real, dim> walls(world_, next_thin_, particles_.block_key(b));
     while (arrivals.begin < arrivals.end) {
       const std::uint32_t first = particles_.block_size(b), count = particles_.receive(arrivals, passing);
-      scatter_chunk(particles_.columns(b, first, passing), count, origin, tile);
+      scatter_chunk(particles_.columns(b, first, passing), count, origin, walls, tile);
     }
   }
 
@@ -88,10 +94,9 @@ class Pass {
   }
 
   void scatter_chunk(const ParticleColumns<Real, dim>& columns, std::uint32_t count, const Index<dim>& origin,
-                     Real* tile) const {
+                     WallScatter<Real, dim>& walls, Real* tile) const {
     if (world_.body_force) evaluate_body_force<Real, dim>(world_, columns, count, origin, world_.t + dt_);
-    Real* before = world_.grid.layers() == 2 ? tile + world_.grid.tile_size() : nullptr;
-    scatter_(columns, count, world_.grid.dx(), next_dt_, world_.transfer, tile, before);
+    walls.scatter(scatter_, columns, count, next_dt_, tile);
   }
 
   World<Real, dim>& world_;
@@ -99,6 +104,7 @@ class Pass {
   MaterialSet<Real, dim>& material_;
   Particles<Real, dim>& particles_;
   const BlockColliders<dim>& colliders_;
+  const ThinColliders<dim>&thin_, &next_thin_;
   double dt_, next_dt_;
   GatherBlock<Real, dim> gather_;
   UpdateStress<Real, dim> update_;
@@ -110,20 +116,26 @@ class Pass {
 template <class Real, int dim>
 void gather_to_scatter(World<Real, dim>& world, double dt, double next_dt, StepReport& report) {
   const VerbTimer timer(world.verb_times, Verb::gather_to_scatter);
-  const BlockColliders<dim> colliders(world.colliders, world.t + dt, world.grid.dx());
+  const BlockColliders<dim> colliders(world.colliders, world.t, dt, world.grid.dx());
+  const double dx = world.grid.dx();
+  const ThinColliders<dim> thin(world.colliders, world.t, dx, world.grid.kernel());
+  const ThinColliders<dim> next_thin(world.colliders, world.t + dt, dx, world.grid.kernel());
+  world.walls.tiles.clear();
+  add_wall_tiles(next_thin, world.grid.particle_blocks(), world.walls);
   const std::size_t blocks = world.grid.particle_blocks().size();
   // Material by material, so that every tile sums its particles in the order in which scatter would.
   for (std::size_t m = 0; m < world.materials.size(); ++m) {
     auto& material = world.materials[m];
-    Pass<Real, dim> pass(world, m, colliders, dt, next_dt);
+    Pass<Real, dim> pass(world, m, colliders, thin, next_thin, dt, next_dt);
     std::vector<BlockReport> reports(blocks);
     parallel_each(blocks, [&](std::size_t b) { pass.run(b, reports[b]); });
-    combine(material, reports, true, true, report);
+    combine(world, m, reports, true, true, report);
 
     const auto arrivals = material.particles.route();
     std::vector<std::uint64_t> keys;
     for (const auto& group : arrivals) keys.push_back(material.particles.block_key(group.block));
     world.grid.add_tiles(keys);
+    add_wall_tiles(next_thin, keys, world.walls);
     parallel_each(arrivals.size(), [&](std::size_t k) { pass.deliver(arrivals[k]); });
     material.particles.settle();
   }

@@ -10,29 +10,62 @@
 namespace firn {
 namespace {
 
-/// Adds the part of a layer's tiles that overlaps node block g, in the order of the offsets.
+/// Adds the part of a tile's layer that overlaps the node block at offset o of the tile's block.
+template <class Real, int dim>
+void add_tile(Kernel kernel, int o, const Real* tile, Real* nodes) {
+  const int side = tile_side<dim>(kernel), row = tile_row<dim>(kernel), beyond = side - kBlockSide<dim>;
+  int from[3] = {0, 0, 0}, count[3] = {1, 1, 1};
+  for (int d = 0; d < dim; ++d) {
+    const bool upper = (o >> (dim - 1 - d) & 1) != 0;
+    from[3 - dim + d] = upper ? kBlockSide<dim> : 0;
+    count[3 - dim + d] = upper ? beyond : kBlockSide<dim>;
+  }
+  for (int i = 0; i < count[0]; ++i) {
+    for (int j = 0; j < count[1]; ++j) {
+      Real* target = nodes + (i * kBlockSide<dim> + j) * kBlockSide<dim> * kNodeWidth;
+      const Real* source = tile + (((from[0] + i) * side + from[1] + j) * row + from[2]) * kNodeWidth;
+      for (int k = 0; k < count[2] * kNodeWidth; ++k) target[k] += source[k];
+    }
+  }
+}
+
+/// Adds up a layer of the tiles that overlap node block g, in the order of the offsets.
 template <class Real, int dim>
 void sum_tiles(const Grid<Real, dim>& grid, std::size_t g, int layer, Real* nodes) {
   std::fill_n(nodes, kBlockNodes<dim> * kNodeWidth, Real(0));
-  const int side = tile_side<dim>(grid.kernel()), row = tile_row<dim>(grid.kernel()), beyond = side - kBlockSide<dim>;
+  for (int o = 0; o < kReach<dim>; ++o) {
+    const std::int32_t b = grid.particle_block_of(g, o);
+    if (b >= 0) add_tile<Real, dim>(grid.kernel(), o, grid.tile(static_cast<std::size_t>(b), layer), nodes);
+  }
+}
+
+/// Adds what particles that do not see all of their nodes bring to those they do see, and gives the others: their
+/// layers as in WallFields::tiles, in the same order of tiles.
+template <class Real, int dim>
+std::vector<WallField<Real>> sum_wall_fields(const World<Real, dim>& world, std::size_t g, Real* nodes, Real* before) {
+  constexpr std::size_t kBlock = kBlockNodes<dim> * kNodeWidth;
+  const Grid<Real, dim>& grid = world.grid;
+  const std::size_t layers = static_cast<std::size_t>(grid.layers());
+  std::vector<WallField<Real>> sums;
   for (int o = 0; o < kReach<dim>; ++o) {
     const std::int32_t b = grid.particle_block_of(g, o);
     if (b < 0) continue;
-    const Real* tile = grid.tile(static_cast<std::size_t>(b), layer);
-    int from[3] = {0, 0, 0}, count[3] = {1, 1, 1};
-    for (int d = 0; d < dim; ++d) {
-      const bool upper = (o >> (dim - 1 - d) & 1) != 0;
-      from[3 - dim + d] = upper ? kBlockSide<dim> : 0;
-      count[3 - dim + d] = upper ? beyond : kBlockSide<dim>;
-    }
-    for (int i = 0; i < count[0]; ++i) {
-      for (int j = 0; j < count[1]; ++j) {
-        Real* target = nodes + (i * kBlockSide<dim> + j) * kBlockSide<dim> * kNodeWidth;
-        const Real* source = tile + (((from[0] + i) * side + from[1] + j) * row + from[2]) * kNodeWidth;
-        for (int k = 0; k < count[2] * kNodeWidth; ++k) target[k] += source[k];
+    const auto tiles = world.walls.tiles.find(grid.particle_blocks()[static_cast<std::size_t>(b)]);
+    if (tiles == world.walls.tiles.end()) continue;
+    for (const WallField<Real>& tile : tiles->second) {
+      const auto add = [&](std::size_t layer, Real* target) {
+        add_tile<Real, dim>(grid.kernel(), o, tile.values.data() + layer * grid.tile_size(), target);
+      };
+      if (tile.collider == WallFields<Real>::kSeen) {
+        add(0, nodes);
+        if (before != nullptr) add(1, before);
+        continue;
       }
+      WallField<Real>& sum = get_field(sums, tile.collider, (layers + 1) * kBlock);
+      for (std::size_t layer = 0; layer <= layers; ++layer) add(layer, sum.values.data() + layer * kBlock);
     }
   }
+  return sums;
 }
 
 /// v_i = p_i / m_i + dt g, in place. `change`, if given, comes as the momentum before the step's forces and leaves as
@@ -61,29 +94,152 @@ Vec<double, dim> node_position(std::uint64_t block, int n, double dx) {
   return x;
 }
 
-/// Makes the velocities of nodes inside colliders admissible. Returns the largest speed of a collider at such a node.
+/// The velocity that hidden nodes may have instead of v. @param normal weighted with the node's mass
 template <class Real, int dim>
-double apply_colliders(std::span<const PosedCollider<dim>* const> colliders, std::uint64_t block, double dx,
-                       Real* nodes, Real* change) {
+Vec<double, dim> admissible_behind(const PosedCollider<dim>& collider, const Vec<double, dim>& x, const Real* normal,
+                                   Real mass, const Vec<double, dim>& v) {
+  Vec<double, dim> n;
+  for (int i = 0; i < dim; ++i) n[i] = static_cast<double>(normal[i]);
+  const double length = norm(n);
+  // Material that presses against the same collider from opposite sides shares the node, and must not feel itself.
+  if (!(length > 0.5 * static_cast<double>(mass))) return collider.velocity(x);
+  return collider.admissible(x, (1 / length) * n, v);
+}
+
+/// Makes the velocities of nodes inside colliders admissible and counts the momentum that they lose. Returns the
+/// largest speed of a collider at such a node, or at one that it can reach within `ahead` seconds.
+/// @param behind place of the collider that these nodes are hidden behind, with the normals of its surface; or kSeen
+template <class Real, int dim>
+double apply_colliders(std::span<const StepCollider<dim>* const> colliders, std::uint64_t block, double dx, Real* nodes,
+                       Real* change, double ahead, std::vector<ColliderLoad>& loads,
+                       int behind = WallFields<Real>::kSeen, const Real* normals = nullptr) {
   double fastest = 0;
   for (int n = 0; n < kBlockNodes<dim>; ++n) {
     Real* node = nodes + n * kNodeWidth;
     if (!(node[kMassSlot] > std::numeric_limits<Real>::min())) continue;
     const Vec<double, dim> x = node_position<dim>(block, n, dx);
-    for (const PosedCollider<dim>* collider : colliders) {
-      if (!(collider->distance(x) < 0)) continue;
-      fastest = std::max(fastest, collider->fastest(x));
-      Vec<double, dim> v;
+    for (const StepCollider<dim>* near : colliders) {
+      // Nodes and particles are where they are at the beginning of the step, and so must be what they meet: then
+      // contact is the same in every frame of reference.
+      const PosedCollider<dim>& collider = near->before;
+      const bool hidden = static_cast<int>(near->place) == behind;
+      const double distance = collider.distance(x), speed = near->after.fastest(x);
+      if (hidden || distance < ahead * speed) fastest = std::max(fastest, speed);
+      if (!hidden && !(distance < 0)) continue;
+      Vec<double, dim> v, lost;
       for (int i = 0; i < dim; ++i) v[i] = node[i];
-      const Vec<double, dim> w = collider->admissible(x, v);
+      const Vec<double, dim> w = hidden ? admissible_behind(collider, x, normals + n * kNodeWidth, node[kMassSlot], v)
+                                        : collider.admissible(x, v);
       for (int i = 0; i < dim; ++i) {
         const Real new_v = static_cast<Real>(w[i]);
         if (change != nullptr) change[n * kNodeWidth + i] += new_v - node[i];
+        lost[i] = v[i] - static_cast<double>(new_v);
         node[i] = new_v;
       }
+      loads[near->place].add(static_cast<double>(node[kMassSlot]) * lost, x - collider.pose().origin);
     }
   }
   return fastest;
+}
+
+/// What a node block's velocities come to.
+struct BlockSpeeds {
+  double collider = 0;
+  SpeedsByMass grid, change;
+  std::vector<ColliderLoad> loads = {};
+  std::vector<BlockSpeeds> hidden = {};  ///< of its hidden nodes
+};
+
+/// From summed momentum to velocity, in place.
+template <class Real, int dim>
+class NodeUpdate {
+ public:
+  NodeUpdate(World<Real, dim>& world, double dt)
+      : world_(world), dt_(dt), colliders_(world.colliders, world.t, dt, world.grid.dx()) {
+    for (int i = 0; i < dim; ++i) gravity_impulse_[i] = static_cast<Real>(dt * world.gravity[i]);
+  }
+
+  BlockSpeeds run(std::size_t g) const {
+    Grid<Real, dim>& grid = world_.grid;
+    Real* nodes = grid.nodes(g);
+    Real* change = grid.has_velocity_change() ? grid.velocity_change(g) : nullptr;
+    sum_tiles(grid, g, 0, nodes);
+    if (change != nullptr) sum_tiles(grid, g, 1, change);
+    BlockSpeeds speeds;
+    if (!world_.walls.nodes.empty()) {
+      world_.walls.nodes[g] = sum_wall_fields(world_, g, nodes, change);
+      for (WallField<Real>& field : world_.walls.nodes[g]) speeds.hidden.push_back(update_hidden(g, field));
+    }
+    momentum_to_velocity<Real, dim>(nodes, change, gravity_impulse_);
+    const std::uint64_t block = grid.node_blocks()[g];
+    const auto near = colliders_.near(block, 0);
+    if (!near.empty()) {
+      speeds.loads.resize(world_.colliders.size());
+      speeds.collider = apply_colliders<Real, dim>(near, block, grid.dx(), nodes, change, 3 * dt_, speeds.loads);
+    }
+    measure(nodes, change, speeds);
+    return speeds;
+  }
+
+ private:
+  BlockSpeeds update_hidden(std::size_t g, WallField<Real>& field) const {
+    constexpr std::size_t kBlock = kBlockNodes<dim> * kNodeWidth;
+    const bool flip = world_.grid.has_velocity_change();
+    Real* nodes = field.values.data();
+    Real* change = flip ? nodes + kBlock : nullptr;
+    momentum_to_velocity<Real, dim>(nodes, change, gravity_impulse_);
+    const std::uint64_t block = world_.grid.node_blocks()[g];
+    auto near = colliders_.near(block, 0);
+    // The wall may be farther from its hidden nodes than their block is wide.
+    const StepCollider<dim>* wall = &colliders_.all()[static_cast<std::size_t>(field.collider)];
+    const auto at = std::lower_bound(near.begin(), near.end(), wall);
+    if (at == near.end() || *at != wall) near.insert(at, wall);
+    BlockSpeeds speeds;
+    speeds.loads.resize(world_.colliders.size());
+    speeds.collider = apply_colliders<Real, dim>(near, block, world_.grid.dx(), nodes, change, 3 * dt_, speeds.loads,
+                                                 field.collider, nodes + (flip ? 2 : 1) * kBlock);
+    measure(nodes, change, speeds);
+    return speeds;
+  }
+
+  static void measure(const Real* nodes, const Real* change, BlockSpeeds& speeds) {
+    speeds.grid = speeds_by_mass<Real, dim>(nodes, nodes);
+    if (change != nullptr) speeds.change = speeds_by_mass<Real, dim>(nodes, change);
+  }
+
+  World<Real, dim>& world_;
+  double dt_;
+  BlockColliders<dim> colliders_;
+  Vec<Real, dim> gravity_impulse_;
+};
+
+/// Puts the speeds and loads of all blocks into the world, in the order of blocks.
+template <class Real, int dim>
+void combine(std::span<const BlockSpeeds> blocks, World<Real, dim>& world) {
+  const auto for_each = [&](const auto& body) {
+    for (const BlockSpeeds& block : blocks) {
+      body(block);
+      for (const BlockSpeeds& hidden : block.hidden) body(hidden);
+    }
+  };
+  int heaviest = std::numeric_limits<int>::min();
+  for_each([&](const BlockSpeeds& block) { heaviest = std::max(heaviest, block.grid.exponent); });
+  double collider_speed = 0, grid_speed = 0, grid_change = 0;
+  for_each([&](const BlockSpeeds& block) {
+    collider_speed = std::max(collider_speed, block.collider);
+    add_loads(block.loads, world.collider_loads);
+    if (block.grid.exponent == std::numeric_limits<int>::min()) return;
+    grid_speed = std::max(grid_speed, block.grid.largest(heaviest));
+    if (world.grid.has_velocity_change()) grid_change = std::max(grid_change, block.change.largest(heaviest));
+  });
+  world.block_speeds.clear();
+  for (const BlockSpeeds& block : blocks) {
+    double fastest = block.grid.all;
+    for (const BlockSpeeds& hidden : block.hidden) fastest = std::max(fastest, hidden.grid.all);
+    world.block_speeds.push_back(std::sqrt(fastest));
+  }
+  world.max_collider_speed = collider_speed;
+  world.max_speed = bound_on_speed(world, grid_speed, grid_change);
 }
 
 }  // namespace
@@ -91,38 +247,14 @@ double apply_colliders(std::span<const PosedCollider<dim>* const> colliders, std
 template <class Real, int dim>
 void update_velocity(World<Real, dim>& world, double dt) {
   const VerbTimer timer(world.verb_times, Verb::update_velocity);
-  Grid<Real, dim>& grid = world.grid;
-  const BlockColliders<dim> block_colliders(world.colliders, world.t + dt, grid.dx(), 2 * dt);
-  Vec<Real, dim> gravity_impulse;
-  for (int i = 0; i < dim; ++i) gravity_impulse[i] = static_cast<Real>(dt * world.gravity[i]);
-  const auto blocks = grid.node_blocks();
-  struct Speeds {
-    double collider = 0;
-    SpeedsByMass grid, change;
-  };
-  std::vector<Speeds> speeds(blocks.size());
-  parallel_each(blocks.size(), [&](std::size_t g) {
-    Real* nodes = grid.nodes(g);
-    Real* change = grid.has_velocity_change() ? grid.velocity_change(g) : nullptr;
-    sum_tiles(grid, g, 0, nodes);
-    if (change != nullptr) sum_tiles(grid, g, 1, change);
-    momentum_to_velocity<Real, dim>(nodes, change, gravity_impulse);
-    const auto near = block_colliders.near(blocks[g], 0);
-    if (!near.empty()) speeds[g].collider = apply_colliders<Real, dim>(near, blocks[g], grid.dx(), nodes, change);
-    speeds[g].grid = speeds_by_mass<Real, dim>(nodes, nodes);
-    if (change != nullptr) speeds[g].change = speeds_by_mass<Real, dim>(nodes, change);
-  });
-  int heaviest = std::numeric_limits<int>::min();
-  for (const Speeds& block : speeds) heaviest = std::max(heaviest, block.grid.exponent);
-  double collider_speed = 0, grid_speed = 0, grid_change = 0;
-  for (const Speeds& block : speeds) {
-    collider_speed = std::max(collider_speed, block.collider);
-    if (block.grid.exponent == std::numeric_limits<int>::min()) continue;
-    grid_speed = std::max(grid_speed, block.grid.largest(heaviest));
-    if (grid.has_velocity_change()) grid_change = std::max(grid_change, block.change.largest(heaviest));
-  }
-  world.max_collider_speed = collider_speed;
-  world.max_speed = bound_on_speed(world, grid_speed, grid_change);
+  world.collider_loads.resize(world.colliders.size());
+  const std::size_t blocks = world.grid.node_blocks().size();
+  world.walls.nodes.clear();
+  if (!world.walls.tiles.empty()) world.walls.nodes.resize(blocks);
+  const NodeUpdate<Real, dim> update(world, dt);
+  std::vector<BlockSpeeds> speeds(blocks);
+  parallel_each(blocks, [&](std::size_t g) { speeds[g] = update.run(g); });
+  combine<Real, dim>(speeds, world);
 }
 
 #define FIRN_INSTANTIATE(Real, dim) template void update_velocity<Real, dim>(World<Real, dim>&, double);

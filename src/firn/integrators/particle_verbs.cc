@@ -43,16 +43,19 @@ void scatter(World<Real, dim>& world, double dt) {
   const VerbTimer timer(world.verb_times, Verb::scatter);
   Grid<Real, dim>& grid = world.grid;
   const ScatterBlock<Real, dim> scatter_block = scatter_function<Real, dim>(world.transfer);
+  const ThinColliders<dim> thin(world.colliders, world.t, grid.dx(), grid.kernel());
+  world.walls.tiles.clear();
+  add_wall_tiles(thin, grid.particle_blocks(), world.walls);
   parallel_each(grid.particle_blocks().size(), [&](std::size_t b) {
     const Index<dim> origin = block_origin<dim>(grid.particle_blocks()[b]);
+    WallScatter<Real, dim> walls(world, thin, grid.particle_blocks()[b]);
     std::fill_n(grid.tile(b), grid.tile_size() * static_cast<std::size_t>(grid.layers()), Real(0));
     for (auto& material : world.materials) {
       if (material.block_at[b] < 0) continue;
       const auto own = static_cast<std::size_t>(material.block_at[b]);
       material.particles.for_each_chunk(own, [&](const auto& columns, std::uint32_t, std::uint32_t count) {
         if (world.body_force) evaluate_body_force<Real, dim>(world, columns, count, origin, world.t);
-        scatter_block(columns, count, grid.dx(), dt, world.transfer, grid.tile(b),
-                      grid.layers() == 2 ? grid.tile(b, 1) : nullptr);
+        walls.scatter(scatter_block, columns, count, dt, grid.tile(b));
       });
     }
   });
@@ -62,12 +65,13 @@ template <class Real, int dim>
 void gather(World<Real, dim>& world, double dt, StepReport& report) {
   const VerbTimer timer(world.verb_times, Verb::gather);
   const GatherBlock<Real, dim> gather_block = gather_function<Real, dim>(world.transfer);
-  const BlockColliders<dim> colliders(world.colliders, world.t + dt, world.grid.dx());
+  const BlockColliders<dim> colliders(world.colliders, world.t, dt, world.grid.dx());
+  const ThinColliders<dim> thin(world.colliders, world.t, world.grid.dx(), world.grid.kernel());
   const std::size_t blocks = world.grid.particle_blocks().size();
   std::vector<std::vector<BlockReport>> reports(world.materials.size());
   for (auto& blocks_of_material : reports) blocks_of_material.resize(blocks);
   parallel_each(blocks, [&](std::size_t b) {
-    const BlockNodes<Real, dim> nodes(world, colliders, b);
+    BlockNodes<Real, dim> nodes(world, colliders, thin, dt, b);
     for (std::size_t m = 0; m < world.materials.size(); ++m) {
       auto& material = world.materials[m];
       if (material.block_at[b] < 0) continue;
@@ -75,7 +79,7 @@ void gather(World<Real, dim>& world, double dt, StepReport& report) {
       BlockReport& block = reports[m][b];
       material.particles.for_each_chunk(own, [&](const auto& columns, std::uint32_t first, std::uint32_t count) {
         const GatherReport gathered =
-            gather_block(columns, count, nodes.task(world, dt, first), material.particles.leavers(own));
+            gather_block(columns, count, nodes.task(world, dt, first, block.loads), material.particles.leavers(own));
         block.max_speed = std::max(block.max_speed, gathered.max_speed);
         if (gathered.failed != GatherReport::kNone) {
           block.template note_failure<Real, dim>(world, m, columns, gathered.failed - first,
@@ -86,7 +90,7 @@ void gather(World<Real, dim>& world, double dt, StepReport& report) {
     }
   });
   for (std::size_t m = 0; m < world.materials.size(); ++m) {
-    combine(world.materials[m], reports[m], true, false, report);
+    combine(world, m, reports[m], true, false, report);
   }
 }
 
@@ -112,7 +116,7 @@ void update_stress(World<Real, dim>& world, double dt, StepReport& report) {
         }
       });
     });
-    combine(material, reports, false, true, report);
+    combine(world, m, reports, false, true, report);
   }
 }
 

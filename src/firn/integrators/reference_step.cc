@@ -1,4 +1,7 @@
+#include <firn/colliders/wall_view.h>
+#include <firn/integrators/particle_contact.h>
 #include <firn/integrators/reference_step.h>
+#include <firn/integrators/thin_colliders.h>
 #include <firn/integrators/verbs.h>
 #include <firn/materials/models-inl.h>
 #include <firn/transfer/reference.h>
@@ -33,52 +36,80 @@ void evaluate_body_force(World<Real, dim>& world) {
     auto& particles = material.particles;
     for (std::size_t p = 0; p < particles.size(); ++p) {
       const auto x = particles.position(p, world.grid.dx(), world.grid.kernel());
-      const auto b = world.body_force(x, particles.id()[p], world.t);
+      Vec<double, dim> v;
+      for (int i = 0; i < dim; ++i) v[i] = particles.real(Field::velocity, i)[p];
+      const auto b = world.body_force(x, v, particles.id()[p], world.t);
       for (int i = 0; i < dim; ++i) particles.real(Field::acceleration, i)[p] = static_cast<Real>(b[i]);
     }
   }
 }
 
-template <int dim>
-Vec<double, dim> admissible(const std::vector<PosedCollider<dim>>& colliders, const Vec<double, dim>& x,
-                            Vec<double, dim> v) {
-  for (const auto& collider : colliders) v = collider.admissible(x, v);
-  return v;
-}
-
 template <class Real, int dim>
-void update_velocity(World<Real, dim>& world, const std::vector<PosedCollider<dim>>& colliders, double dt,
+void update_velocity(World<Real, dim>& world, const std::vector<StepCollider<dim>>& colliders, double dt,
                      ReferenceGrid<dim>& grid) {
   world.max_collider_speed = world.max_speed = 0;
-  for (auto& [index, node] : grid) {
+  for (auto& [key, node] : grid) {
+    const auto& [hidden_behind, index] = key;
     // As in the fast step, a mass that a Real cannot hold as a normal number is none.
     if (!(node.mass > static_cast<double>(std::numeric_limits<Real>::min()))) continue;
     Vec<double, dim> x;
     for (int d = 0; d < dim; ++d) x[d] = world.grid.dx() * static_cast<double>(index[static_cast<std::size_t>(d)]);
-    node.velocity = admissible(colliders, x, (1 / node.mass) * node.momentum + dt * world.gravity);
+    node.velocity = (1 / node.mass) * node.momentum + dt * world.gravity;
+    for (const StepCollider<dim>& at : colliders) {
+      const PosedCollider<dim>& collider = at.before;
+      const bool hidden = static_cast<int>(at.place) == hidden_behind;
+      const Vec<double, dim> before = node.velocity;
+      if (!hidden) {
+        node.velocity = collider.admissible(x, before);
+      } else if (norm(node.wall_normal) > 0.5 * node.mass) {
+        node.velocity = collider.admissible(x, normalized(node.wall_normal), before);
+      } else {
+        node.velocity = collider.velocity(x);
+      }
+      world.collider_loads[at.place].add(node.mass * (before - node.velocity), x - collider.pose().origin);
+    }
     world.max_speed = std::max(world.max_speed, norm(node.velocity));
     node.velocity_change = node.velocity - (1 / node.mass) * node.momentum_before;
-    for (const auto& collider : colliders) {
-      if (!(collider.distance(x) < 0)) continue;
-      world.max_collider_speed = std::max(world.max_collider_speed, collider.fastest(x));
+    for (const StepCollider<dim>& collider : colliders) {
+      const bool hidden = static_cast<int>(collider.place) == hidden_behind;
+      const double speed = collider.after.fastest(x), distance = collider.before.distance(x);
+      if (hidden || distance < 3 * dt * speed) world.max_collider_speed = std::max(world.max_collider_speed, speed);
     }
   }
 }
 
+/// Who sees what at the beginning of the step.
+template <class Real, int dim>
+HiddenBehind<dim> hidden_behind(const World<Real, dim>& world) {
+  return [thin = ThinColliders<dim>(world.colliders, world.t, world.grid.dx(), world.grid.kernel())](
+             const Vec<double, dim>& x_p, const Vec<double, dim>& x_i, Vec<double, dim>& normal) {
+    for (const ThinCollider<dim>& collider : thin.all()) {
+      const WallView<dim> from = wall_view(collider.posed, x_p), to = wall_view(collider.posed, x_i);
+      if (hides(collider.posed, from, to, normal)) return static_cast<int>(collider.place);
+    }
+    return -1;
+  };
+}
+
 /// Colliders act on v and u; then x_p += dt u.
 template <class Real, int dim>
-void move(World<Real, dim>& world, std::size_t m, const std::vector<PosedCollider<dim>>& colliders, double dt,
+void move(World<Real, dim>& world, std::size_t m, const std::vector<StepCollider<dim>>& colliders, double dt,
           const std::vector<Vec<double, dim>>& moves_with, StepReport& report) {
   auto& material = world.materials[m];
   auto& particles = material.particles;
   const double dx = world.grid.dx();
+  std::vector<const StepCollider<dim>*> all;
+  for (const StepCollider<dim>& collider : colliders) all.push_back(&collider);
+  const ParticleContact<Real, dim> contact(world, dt, all);
   material.max_speed = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
-    const auto x = particles.position(p, dx, world.grid.kernel());
-    Vec<double, dim> v;
+    MovingParticle<dim> particle = {particles.position(p, dx, world.grid.kernel()),
+                                    static_cast<double>(particles.real(Field::mass)[p]),
+                                    {},
+                                    moves_with[p]};
+    Vec<double, dim>&v = particle.v, &u = particle.u;
     for (int i = 0; i < dim; ++i) v[i] = static_cast<double>(particles.real(Field::velocity, i)[p]);
-    v = admissible(colliders, x, v);
-    const Vec<double, dim> u = admissible(colliders, x, moves_with[p]);
+    contact.apply(particle, world.collider_loads);
     for (int i = 0; i < dim; ++i) particles.real(Field::velocity, i)[p] = static_cast<Real>(v[i]);
     material.max_speed = std::max(material.max_speed, norm(v));
 
@@ -168,17 +199,20 @@ StepReport reference_step(World<Real, dim>& world, double dt) {
   StepReport report;
   const double dx = world.grid.dx();
   const Period<dim>& period = world.grid.period();
-  std::vector<PosedCollider<dim>> colliders;
-  for (const auto& collider : world.colliders) colliders.emplace_back(collider, world.t + dt, 2 * dt);
+  const BlockColliders<dim> posed(world.colliders, world.t, dt, dx);
+  const std::vector<StepCollider<dim>>& colliders = posed.all();
+  world.collider_loads.resize(world.colliders.size());
 
   if (world.body_force) evaluate_body_force<Real, dim>(world);
   ReferenceGrid<dim> grid;
+  const HiddenBehind<dim> behind = hidden_behind(world);
   for (const auto& material : world.materials) {
-    reference_scatter<Real, dim>(material.particles, dx, dt, world.transfer, period, grid);
+    reference_scatter<Real, dim>(material.particles, dx, dt, world.transfer, period, behind, grid);
   }
   update_velocity<Real, dim>(world, colliders, dt, grid);
   for (std::size_t m = 0; m < world.materials.size(); ++m) {
-    const auto moves_with = reference_gather<Real, dim>(world.materials[m].particles, dx, world.transfer, period, grid);
+    const auto moves_with =
+        reference_gather<Real, dim>(world.materials[m].particles, dx, world.transfer, period, behind, grid);
     move(world, m, colliders, dt, moves_with, report);
   }
   for (std::size_t m = 0; m < world.materials.size(); ++m) {

@@ -15,6 +15,7 @@ struct SpeedsByMass {
   static constexpr int kClasses = 8;
   int exponent = std::numeric_limits<int>::min();
   std::array<double, kClasses> squares = {};
+  double all = 0;  ///< largest square of any node
 
   /// The largest speed of nodes that are not lighter than 2^-kClasses of `heaviest`.
   double largest(int heaviest) const {
@@ -46,6 +47,7 @@ SpeedsByMass speeds_by_mass(const Real* nodes, const Real* vectors) {
       const auto v = static_cast<double>(vectors[n * kNodeWidth + i]);
       square += v * v;
     }
+    speeds.all = std::max(speeds.all, square);
     std::size_t k = 0;
     while (k < least.size() && nodes[n * kNodeWidth + kMassSlot] < least[k]) ++k;
     if (k < least.size()) speeds.squares[k] = std::max(speeds.squares[k], square);

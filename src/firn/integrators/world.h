@@ -1,6 +1,8 @@
 #pragma once
 
 #include <firn/colliders/collider.h>
+#include <firn/colliders/collider_load.h>
+#include <firn/integrators/wall_fields.h>
 #include <firn/materials/model_parameters.h>
 #include <firn/state/grid.h>
 #include <firn/state/particles.h>
@@ -12,6 +14,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace firn {
@@ -44,10 +48,32 @@ struct MaterialSet {
   std::vector<std::int32_t> block_at = {};
 };
 
-/// Acceleration at world position x of the particle with this id at time t, m/s^2. Called from several threads; must
-/// not start parallel work of its own.
+/// Acceleration of a particle, m/s^2: a function of its world position x (m), id and the time t (s), or of its
+/// position, velocity v (m/s), id and the time. Called from several threads; must not start parallel work of its own.
 template <int dim>
-using BodyForce = std::function<Vec<double, dim>(const Vec<double, dim>& x, std::uint32_t id, double t)>;
+class BodyForce {
+ public:
+  using Vector = Vec<double, dim>;
+
+  BodyForce() = default;
+  template <class Force>
+  requires(!std::is_same_v<Force, BodyForce> && std::is_invocable_v<const Force&, const Vector&, std::uint32_t, double>)
+      BodyForce(Force force)
+      : force_([force = std::move(force)](const Vector& x, const Vector&, std::uint32_t id, double t) {
+          return force(x, id, t);
+        }) {}
+  template <class Force>
+  requires(!std::is_same_v<Force, BodyForce> &&
+           std::is_invocable_v<const Force&, const Vector&, const Vector&, std::uint32_t, double>)
+      BodyForce(Force force)
+      : force_(std::move(force)) {}
+
+  explicit operator bool() const { return static_cast<bool>(force_); }
+  Vector operator()(const Vector& x, const Vector& v, std::uint32_t id, double t) const { return force_(x, v, id, t); }
+
+ private:
+  std::function<Vector(const Vector&, const Vector&, std::uint32_t, double)> force_;
+};
 
 /// Everything that a step reads and writes.
 template <class Real, int dim>
@@ -59,16 +85,23 @@ struct World {
 
   TransferSettings transfer;
   Grid<Real, dim> grid;
+  WallFields<Real> walls;  ///< what the grid holds beside thin colliders
   std::vector<MaterialSet<Real, dim>> materials;
   std::vector<Collider<dim>> colliders;
+  /// What each collider has taken; steps only add to it.
+  std::vector<ColliderLoad> collider_loads;
   Vec<double, dim> gravity = {};  ///< m/s^2
   BodyForce<dim> body_force;      ///< may be empty; set it before materials are added
   double t = 0;                   ///< s
   std::uint64_t steps = 0;
-  double max_collider_speed = 0;  ///< at nodes inside colliders in the last step, m/s
+  double max_collider_speed = 0;  ///< at nodes that are inside colliders or that these may soon reach, m/s
   double max_speed = 0;           ///< no particle is faster after the last step, m/s
+  /// Speed of the fastest node of each of the grid's node blocks, m/s: what no particle moves faster than.
+  std::vector<double> block_speeds = {};
   /// Whether steps may run gather, update_stress and the next scatter block by block. The bits are the same.
   bool fused = true;
+  /// Whether particles are stopped where their way in a step meets a collider. Off only to show what that is for.
+  bool swept_contact = true;
   /// The time step that the tiles hold the particles' contributions for, if they hold them.
   std::optional<double> scattered_dt;
   /// Whether all fields of all particles are stored.

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <firn/io/frame_rows.h>
+
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -49,10 +51,8 @@ class StatsTable {
   /// Begins a new file (an old one is replaced) with the header line. Throws Error (files).
   explicit StatsTable(const std::filesystem::path& path, std::vector<std::string> further_columns = {});
 
-  /// Goes on with the file of a run that goes on after `frame`. A torn last line is dropped. Rows of later frames stay
-  /// until append() replaces them, or go at once unless `keep_later`. A file that is missing, or has other columns, is
-  /// begun anew with a warning. Throws Error (files).
-  static StatsTable resume(const std::filesystem::path& path, std::vector<std::string> further_columns,
+  /// Goes on with the file of a run that goes on after `frame`, as FrameRows::resume().
+  static StatsTable resume(const std::filesystem::path& path, const std::vector<std::string>& further_columns,
                            std::int64_t frame, bool keep_later);
 
   /// Throws Error (files); the file then ends with the row before. Throws Error (usage) if the row has another number
@@ -60,17 +60,14 @@ class StatsTable {
   void append(const StatsRow& row);
 
   /// Flushes all rows to the disk. Throws Error (files).
-  void sync() const;
+  void sync() const { rows_.sync(); }
 
  private:
-  StatsTable() = default;
-  void write_all() const;
+  StatsTable(const std::filesystem::path& path, std::size_t further_columns, FrameRows rows);
 
   std::filesystem::path path_;
   std::size_t further_columns_ = 0;
-  /// Only while rows of later frames stay: the lines before them, and they.
-  std::string before_;
-  std::map<std::int64_t, std::string> later_;
+  FrameRows rows_;
 };
 
 }  // namespace firn

@@ -82,6 +82,7 @@ Camera automatic_camera(const Snapshot& snapshot, const View& view) {
   for (const DrawnSolid& solid : view.solids) {
     for (const Vec3d& x : solid.surface->mesh.vertices) bounds.add(solid.at(x), 0);
   }
+  for (const auto& [centre, radius] : view.expected) bounds.add(centre, radius);
   if (bounds.low[0] > bounds.high[0]) bounds.add({}, 1);
   Camera camera;
   camera.up = snapshot.dimension == 2 ? Vec3d{{0, 1, 0}} : normalized(view.up);

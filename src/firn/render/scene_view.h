@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace firn {
@@ -83,6 +84,8 @@ struct View {
   std::vector<DrawnBox> boxes;
   std::vector<DrawnSphere> spheres;
   std::vector<DrawnSolid> solids;
+  /// Balls (centre and radius, m) that an automatic camera sees too: where something is going to be.
+  std::vector<std::pair<Vec3d, double>> expected;
 };
 
 /// The picture of a snapshot, in 3D by casting rays on the threads of the enclosing task arena; the same bits on any
@@ -91,8 +94,8 @@ struct View {
 /// font.
 Image render_snapshot(const Snapshot& snapshot, const View& view);
 
-/// A camera that sees all particles (but for the outermost hundredth) and the boxes, spheres and solids of the view,
-/// from the front right and above.
+/// A camera that sees all particles (but for the outermost hundredth), the boxes, spheres and solids of the view and
+/// what it expects, from the front right and above.
 Camera automatic_camera(const Snapshot& snapshot, const View& view);
 
 }  // namespace firn

@@ -13,6 +13,22 @@ namespace firn {
 template <int dim>
 std::unique_ptr<Region<dim>> body_region(const Scene& scene, const BodySettings& body);
 
+/// The same for the place of an emitter or a sink.
+template <int dim>
+std::unique_ptr<Region<dim>> region_of(const Scene& scene, const RegionSettings& settings) {
+  BodySettings body;
+  body.mesh = settings.mesh;
+  body.polygon = settings.polygon;
+  body.shape = settings.shape;
+  body.size = settings.size;
+  body.radius = settings.radius;
+  body.scale = settings.scale;
+  body.units = settings.units;
+  body.rotation = settings.rotation;
+  body.position = settings.position;
+  return body_region<dim>(scene, body);
+}
+
 /// Where the body's mesh goes, and how large.
 Placement placement_of(const BodySettings& body);
 

@@ -3,6 +3,7 @@
 #include <firn/scene/body_region.h>
 #include <firn/scene/build_world.h>
 #include <firn/scene/collider_shape.h>
+#include <firn/scene/force_fields.h>
 #include <firn/scene/initial_velocity.h>
 #include <firn/scene/vary_parameters.h>
 #include <firn/seeding/sampling.h>
@@ -80,6 +81,7 @@ WorldPlan plan_of(const Scene& scene, const Regions<dim>& regions) {
   const double particles_per_volume = resolution.cell_size
                                           ? resolution.particles_per_cell / std::pow(plan.cell_size, dim)
                                           : static_cast<double>(*resolution.particles) / volume;
+  plan.particle_volume = 1 / particles_per_volume;
   for (std::size_t b = 0; b < regions.size(); ++b) {
     const double wanted = regions[b]->volume() * particles_per_volume;
     if (!(wanted < std::numeric_limits<std::int32_t>::max())) {
@@ -161,6 +163,8 @@ BuiltWorld<Real, dim> build_world(const Scene& scene) {
   WorldPlan plan = plan_of<dim>(scene, regions);
   World<Real, dim> world(plan.cell_size, transfer_of(scene.method), period_of<dim>(scene, plan.cell_size));
   world.gravity = cut<dim>(scene.gravity);
+  const auto tractions = std::make_shared<Tractions<dim>>(scene);
+  world.body_force = force_of<dim>(scene, tractions);
   world.colliders = colliders_of<dim>(scene, plan.cell_size);
   warn_of_thin_colliders<dim>(world.colliders, plan.cell_size);
   for (const MaterialSettings& material : scene.materials) {
@@ -184,10 +188,14 @@ BuiltWorld<Real, dim> build_world(const Scene& scene) {
       vary_parameters<Real, dim>(scene, *scene.find_material(body.material), body,
                                  {material, first, next_id, samples.positions});
     }
+    tractions->attach({b, *regions[b], samples.positions, next_id,
+                       scene.find_material(body.material)->density * samples.volume_per_sample,
+                       samples.volume_per_sample});
     plan.bodies[b].particles = static_cast<std::int64_t>(samples.positions.size());
     plan.particles += plan.bodies[b].particles;
     next_id += static_cast<std::uint32_t>(samples.positions.size());
   }
+  tractions->check();
   return {std::move(world), std::move(plan)};
 }
 

@@ -18,7 +18,8 @@ struct WorldPlan {
     std::int64_t particles = 0;  ///< that its share of the resolution asks for
     double width_in_cells = 0;   ///< longest side of its bounding box
   };
-  double cell_size = 0;  ///< m
+  double cell_size = 0;        ///< m
+  double particle_volume = 0;  ///< that the resolution asks for, m^3 (m^2 in 2D): the volume of emitted particles
   std::int64_t particles = 0;
   std::vector<Body> bodies;
 };

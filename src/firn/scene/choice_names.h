@@ -43,9 +43,10 @@ struct ChoiceNames<BodySettings::Units> {
 };
 template <>
 struct ChoiceNames<ShapeSettings::Shape> {
-  static constexpr std::string_view list[] = {"half_space", "box",   "rounded_box",  "sphere",    "capsule",
-                                              "cylinder",   "cone",  "torus",        "polygon",   "height_field",
-                                              "mesh",       "union", "intersection", "difference"};
+  static constexpr std::string_view list[] = {
+      "half_space",   "box",       "rounded_box",  "sphere", "capsule",       "cylinder",           "cone",
+      "torus",        "polygon",   "height_field", "mesh",   "mesh_sequence", "level_set_sequence", "union",
+      "intersection", "difference"};
 };
 template <>
 struct ChoiceNames<ColliderSettings::Look> {
@@ -56,8 +57,21 @@ struct ChoiceNames<ColliderSettings::Interpolation> {
   static constexpr std::string_view list[] = {"linear", "smooth"};
 };
 template <>
+struct ChoiceNames<ColliderSettings::AtEnd> {
+  static constexpr std::string_view list[] = {"hold", "cycle"};
+};
+template <>
 struct ChoiceNames<ColliderSettings::Contact> {
   static constexpr std::string_view list[] = {"sticky", "slip", "separate"};
+};
+
+template <>
+struct ChoiceNames<FieldSettings::Type> {
+  static constexpr std::string_view list[] = {"acceleration", "attractor", "vortex", "wind"};
+};
+template <>
+struct ChoiceNames<ProbeSettings::Shape> {
+  static constexpr std::string_view list[] = {"point", "line", "plane"};
 };
 
 }  // namespace firn

@@ -1,5 +1,6 @@
 #include <firn/core/error.h>
 #include <firn/core/log.h>
+#include <firn/core/parallel.h>
 #include <firn/geometry/combined_shapes.h>
 #include <firn/geometry/polygon_shape.h>
 #include <firn/geometry/prepare_mesh.h>
@@ -12,8 +13,10 @@
 #include <firn/io/number_table.h>
 #include <firn/scene/body_region.h>
 #include <firn/scene/collider_shape.h>
+#include <firn/scene/deforming_collider.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -198,30 +201,54 @@ void set_motion(const Scene& scene, const ColliderSettings& settings, Collider<d
   }
 }
 
+/// The thinnest that a collider gets, without the scale of its frame, m.
+template <int dim>
+double least_thickness(const Collider<dim>& collider) {
+  if (!collider.deforming) return wall_thickness<dim>(*collider.shape);
+  const std::vector<double>& times = collider.deforming->times();
+  std::vector<double> thickness(times.size());
+  parallel_each(times.size(),
+                [&](std::size_t k) { thickness[k] = wall_thickness<dim>(*collider.deforming->at(times[k])); });
+  return *std::min_element(thickness.begin(), thickness.end());
+}
+
+/// How thin the walls of a collider are when its motion has shrunk it most, m.
+template <int dim>
+double thickness_of(const Collider<dim>& collider) {
+  double scale = 1;
+  if (collider.keyframes) {
+    for (const Keyframe<dim>& key : collider.keyframes->keyframes()) scale = std::min(scale, key.scale);
+  }
+  return scale * least_thickness<dim>(collider);
+}
+
 template <int dim>
 Collider<dim> make_collider(const Scene& scene, const ColliderSettings& settings, double cell_size) {
   Collider<dim> collider;
   collider.name = settings.name;
-  collider.shape = collider_shape<dim>(scene, settings, 0.5 * cell_size);
+  if constexpr (dim == 3) {
+    if (settings.is_sequence()) collider.deforming = deforming_shape(scene, settings);
+  }
+  collider.shape = collider.deforming ? collider.deforming->at(collider.deforming->times().front())
+                                      : collider_shape<dim>(scene, settings, 0.5 * cell_size);
   set_motion<dim>(scene, settings, collider);
   collider.contact = static_cast<Contact>(settings.contact);
   collider.friction = settings.friction;
+  collider.thickness = thickness_of(collider);
+  collider.push_out = settings.push_out;
   return collider;
 }
 
 template <int dim>
 void warn_of_thin_colliders(const std::vector<Collider<dim>>& colliders, double cell_size) {
   for (const Collider<dim>& collider : colliders) {
-    double scale = 1;
-    if (collider.keyframes) {
-      for (const Keyframe<dim>& key : collider.keyframes->keyframes()) scale = std::min(scale, key.scale);
-    }
-    const double thickness = scale * wall_thickness<dim>(*collider.shape);
+    const double thickness = collider.thickness;
     // The measure is good to some per cent.
     if (!(thickness < 1.95 * cell_size)) continue;
     log_warning(
-        fmt::format("collider \"{}\" is about {:.2g} m thick, {:.2g} cells: what is on one side is felt on the "
-                    "other, and fast particles may cross it; make it two cells thick, or cells at most {:.2g} m",
+        fmt::format("collider \"{}\" is about {:.2g} m thick, {:.2g} cells: keeping its sides apart takes time, and "
+                    "what a mesh has thinner than half a cell may be missing; make it two cells thick, or cells at "
+                    "most {:.2g} m",
                     collider.name, thickness, thickness / cell_size, 0.5 * thickness));
   }
 }

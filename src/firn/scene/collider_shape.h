@@ -26,7 +26,7 @@ void set_motion(const Scene& scene, const ColliderSettings& settings, Collider<d
 template <int dim>
 Collider<dim> make_collider(const Scene& scene, const ColliderSettings& settings, double cell_size);
 
-/// Warns of every collider whose walls are thinner than two cells: material on one side feels what is on the other.
+/// Warns of every collider whose walls are thinner than two cells: they cost time, and a mesh may have holes.
 template <int dim>
 void warn_of_thin_colliders(const std::vector<Collider<dim>>& colliders, double cell_size);
 

@@ -1,7 +1,6 @@
 #include <firn/core/log.h>
 #include <firn/materials/model_info.h>
-#include <firn/scene/nearest.h>
-#include <firn/scene/scene_draft.h>
+#include <firn/scene/complete_objects.h>
 #include <firn/scene/value_text.h>
 #include <firn/state/cell_key.h>
 
@@ -81,45 +80,13 @@ void complete_materials(const SceneDraft& draft) {
   }
 }
 
-template <class Settings>
-void complete_names(const SceneDraft& draft, std::string_view section, std::vector<Settings>& objects) {
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (objects[i].name.empty()) objects[i].name = fmt::format("{}{}", section, i);
-    for (std::size_t j = 0; j < i; ++j) {
-      if (objects[j].name != objects[i].name) continue;
-      draft.fail(section, i, "name", fmt::format("an earlier {} has the same name; names must differ", section));
-    }
-  }
-}
-
-void check_body(const SceneDraft& draft, std::size_t i) {
-  const Scene& scene = draft.scene;
-  const BodySettings& body = scene.bodies[i];
-  const bool flat = scene.dimension == 2;
-  if (flat && !body.mesh.empty()) {
-    draft.fail("body", i, "mesh", "a mesh needs a 3D scene; in 2D give polygon or shape");
-  }
-  if (!flat && !body.polygon.empty())
-    draft.fail("body", i, "polygon", "a polygon needs dimension = 2; in 3D give mesh");
-  if (flat && body.shape == BodySettings::Shape::sphere) {
-    draft.fail("body", i, "shape", "shape \"sphere\" needs a 3D scene; in 2D use \"disk\"");
-  }
-  if (!flat && body.shape == BodySettings::Shape::disk) {
-    draft.fail("body", i, "shape", "shape \"disk\" needs dimension = 2; in 3D use \"sphere\"");
-  }
-  if (!body.mesh.empty()) check_file(draft, "body", i, "mesh", body.mesh);
-  if (!body.polygon.empty()) check_file(draft, "body", i, "polygon", body.polygon);
-  if (!scene.find_material(body.material)) {
-    std::vector<std::string> names;
-    for (const MaterialSettings& material : scene.materials) names.push_back(material.name);
-    draft.fail("body", i, "material",
-               fmt::format("no [material.{}]{}", key_text(body.material), suggestion(body.material, names)));
-  }
-}
-
 void complete_bodies(SceneDraft& draft) {
   complete_names(draft, "body", draft.scene.bodies);
-  for (std::size_t i = 0; i < draft.scene.bodies.size(); ++i) check_body(draft, i);
+  for (std::size_t i = 0; i < draft.scene.bodies.size(); ++i) {
+    const BodySettings& body = draft.scene.bodies[i];
+    check_place(draft, "body", i, body.mesh, body.polygon, body.shape);
+    check_material(draft, "body", i, body.material);
+  }
 }
 
 void complete_pictures(SceneDraft& draft) {
@@ -161,6 +128,7 @@ void complete_scene(SceneDraft& draft) {
   complete_names(draft, "part", draft.scene.parts);
   complete_names(draft, "collider", draft.scene.colliders);
   complete_colliders(draft);
+  complete_sources(draft);
   complete_pictures(draft);
 }
 

@@ -57,6 +57,8 @@ Json type_schema(const Key& key) {
       return {{"type", "string"}, {"enum", key.choices}};
     case ValueType::vector:
       return list_schema(number, 2, 3);
+    case ValueType::formula:
+      return {{"anyOf", {number, {{"type", "string"}}}}};
     case ValueType::formulas:
       return list_schema({{"anyOf", {number, {{"type", "string"}}}}}, 2, 3);
     case ValueType::vector3:
@@ -67,6 +69,10 @@ Json type_schema(const Key& key) {
       return list_schema(number, 2, 2);
     case ValueType::box:
       return list_schema(list_schema(number, 2, 3), 2, 2);
+    case ValueType::numbers:
+      return {{"type", "array"}, {"items", number}};
+    case ValueType::files:
+      return {{"anyOf", {{{"type", "string"}}, {{"type", "array"}, {"items", {{"type", "string"}}}}}}};
     case ValueType::texts:
       return {{"type", "array"}, {"items", {{"type", "string"}}}};
     case ValueType::keyframes:
@@ -135,7 +141,10 @@ std::string scene_json_schema() {
         break;
     }
   }
-  for (const std::string_view name : {"resolution", "material", "body"}) root["required"].push_back(name);
+  for (const std::string_view name : {"resolution", "material"}) root["required"].push_back(name);
+  for (const std::string_view name : {"body", "emitter"}) {
+    root["anyOf"].push_back({{"required", Json::array({name})}});
+  }
   return root.dump(2) + "\n";
 }
 

@@ -65,6 +65,13 @@ struct FieldTraits<Vec3d> {
 };
 
 template <>
+struct FieldTraits<NumberOrFormula> {
+  static constexpr ValueType type = ValueType::formula;
+  static Value to_value(const NumberOrFormula& field) { return std::vector<NumberOrFormula>{field}; }
+  static NumberOrFormula from_value(const Value& value) { return std::get<std::vector<NumberOrFormula>>(value)[0]; }
+};
+
+template <>
 struct FieldTraits<std::array<NumberOrFormula, 3>> {
   using Field = std::array<NumberOrFormula, 3>;
   static constexpr ValueType type = ValueType::formulas;
@@ -83,6 +90,13 @@ struct FieldTraits<std::array<double, 2>> {
     const auto& numbers = std::get<std::vector<double>>(value);
     return {numbers[0], numbers[1]};
   }
+};
+
+template <>
+struct FieldTraits<std::vector<double>> {
+  static constexpr ValueType type = ValueType::numbers;
+  static Value to_value(const std::vector<double>& field) { return field; }
+  static std::vector<double> from_value(const Value& value) { return std::get<std::vector<double>>(value); }
 };
 
 template <>

@@ -19,7 +19,7 @@ class SceneReader {
   SceneDraft read() {
     check_root_keys();
     for (const Section& section : schema()) read_section(section);
-    if (draft_.scene.bodies.empty()) missing_.push_back("a [[body]]");
+    if (draft_.scene.bodies.empty() && draft_.scene.emitters.empty()) missing_.push_back("a [[body]] or [[emitter]]");
     report_missing();
     return std::move(draft_);
   }

@@ -37,6 +37,8 @@ class ValueReader {
         return integer();
       case ValueType::vector:
         return padded(list(node_, static_cast<std::size_t>(dimension_)));
+      case ValueType::formula:
+        return std::vector<NumberOrFormula>{number_or_formula(node_)};
       case ValueType::formulas:
         return formulas();
       case ValueType::vector3:
@@ -47,6 +49,11 @@ class ValueReader {
         return rotation();
       case ValueType::box:
         return box();
+      case ValueType::numbers:
+        return list(node_, node_.array() ? node_.array()->size() : 0);
+      case ValueType::files:
+        if (const auto* text = std::get_if<std::string>(&node_.value)) return std::vector<std::string>{*text};
+        return texts();
       case ValueType::texts:
         return texts();
       case ValueType::keyframes:

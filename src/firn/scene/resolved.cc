@@ -28,7 +28,7 @@ class Writer {
       if (!applies(section, key, object) || (only_deciding_ && !key.decides_result)) continue;
       const std::optional<Value> value = key.get(object);
       if (!value) continue;
-      const Value written = key.is_path ? moved(std::get<std::string>(*value)) : *value;
+      const Value written = key.is_path ? moved(*value) : *value;
       lines += fmt::format("{} = {}\n", key.info.name, value_text(key, written, scene_.dimension));
     }
     if (!lines.empty()) text_ += header(section, index) + lines;
@@ -46,6 +46,13 @@ class Writer {
         return fmt::format("\n[[{}]]\n", section.name);
     }
     return "";
+  }
+
+  Value moved(const Value& value) const {
+    if (const auto* path = std::get_if<std::string>(&value)) return moved(*path);
+    std::vector<std::string> paths = std::get<std::vector<std::string>>(value);
+    for (std::string& path : paths) path = moved(path);
+    return paths;
   }
 
   std::string moved(const std::string& path) const {

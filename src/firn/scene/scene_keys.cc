@@ -1,4 +1,5 @@
 #include <firn/core/error.h>
+#include <firn/io/file_sequence.h>
 #include <firn/scene/scene_keys.h>
 #include <firn/scene/schema.h>
 #include <firn/scene/value_text.h>
@@ -6,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -14,13 +16,24 @@
 namespace firn {
 namespace {
 
-std::string file_text(const Scene& scene, const std::string& path_in_scene) {
-  const std::filesystem::path path = scene.locate(path_in_scene);
+std::string file_text(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error(ErrorKind::files, fmt::format("{}: cannot read: {}", path.string(), std::strerror(errno)));
   const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   return fmt::format("{} with the hash {:016x}", in_quotes(path.filename().string()),
                      XXH64(bytes.data(), bytes.size(), 0));
+}
+
+/// Each file with a hash, of a path or of a list of paths and patterns.
+std::string files_text(const Scene& scene, const Key& key, const Value& value) {
+  if (const auto* path = std::get_if<std::string>(&value)) {
+    return path->empty() ? value_text(key, value, scene.dimension) : file_text(scene.locate(*path));
+  }
+  std::vector<std::string> files;
+  for (const std::string& pattern : std::get<std::vector<std::string>>(value)) {
+    for (const std::filesystem::path& path : expand_sequence(scene.locate(pattern))) files.push_back(file_text(path));
+  }
+  return fmt::format("{}", fmt::join(files, ", "));
 }
 
 std::string name_of(const Scene& scene, const Section& section, std::size_t index) {
@@ -37,9 +50,8 @@ void add_keys(const Scene& scene, const Section& section, std::size_t index, con
     if (!key.decides_result || !applies(section, key, object)) continue;
     const std::optional<Value> value = key.get(object);
     if (!value) continue;
-    const auto* path = key.is_path ? std::get_if<std::string>(&*value) : nullptr;
     keys[prefix + std::string(key.info.name)] =
-        path != nullptr && !path->empty() ? file_text(scene, *path) : value_text(key, *value, scene.dimension);
+        key.is_path ? files_text(scene, key, *value) : value_text(key, *value, scene.dimension);
   }
 }
 
@@ -48,6 +60,9 @@ void add_keys(const Scene& scene, const Section& section, std::size_t index, con
 std::map<std::string, std::string> scene_keys(const Scene& scene) {
   std::map<std::string, std::string> keys;
   for (const Section& section : schema()) {
+    if (std::none_of(section.keys.begin(), section.keys.end(), [](const Key& key) { return key.decides_result; })) {
+      continue;
+    }
     const bool many = section.kind == SectionKind::named || section.kind == SectionKind::list;
     std::vector<std::string> names;
     for (std::size_t i = 0; i < section.count(scene); ++i) {

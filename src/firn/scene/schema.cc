@@ -83,6 +83,8 @@ std::string type_text(const Key& key, int dimension) {
       return "one of " + quoted_list(key.choices);
     case ValueType::vector:
       return dimension == 0 ? "a list of 3 numbers (2 in a 2D scene)" : fmt::format("a list of {} numbers", dimension);
+    case ValueType::formula:
+      return "a number or a formula in quotes";
     case ValueType::formulas:
       return dimension == 0 ? "a list of 3 numbers or formulas in quotes (2 in a 2D scene)"
                             : fmt::format("a list of {} numbers or formulas in quotes", dimension);
@@ -95,6 +97,10 @@ std::string type_text(const Key& key, int dimension) {
       return "a list of 2 numbers, the lower first";
     case ValueType::box:
       return "two corners, [[lowest], [highest]]";
+    case ValueType::numbers:
+      return "a list of numbers";
+    case ValueType::files:
+      return "a text in quotes or a list of them";
     case ValueType::texts:
       return "a list of texts in quotes";
     case ValueType::keyframes:

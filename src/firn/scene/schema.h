@@ -23,17 +23,20 @@ enum class ValueType {
   text,
   choice,
   vector,    ///< one number per dimension
+  formula,   ///< a number or a formula
   formulas,  ///< one number or formula per dimension
   vector3,   ///< three numbers, also in 2D
   rotation,  ///< one number in 2D, three in 3D
   interval,  ///< two numbers, the lower first
   box,       ///< two vectors: lowest and highest corner
+  numbers,   ///< a list of any length
   texts,     ///< a list of names
+  files,     ///< a text or a list of texts, each a path or a pattern of paths
   keyframes  ///< a list of tables with the keys of keyframe_keys()
 };
 
-/// A value of any ValueType. Lists of numbers are stored for 3D (vector and formulas: 3, interval: 2, box: 6 numbers);
-/// a rotation in 2D is the third of its three numbers.
+/// A value of any ValueType. A formula is a list of one. Lists of numbers are stored for 3D (vector and formulas: 3,
+/// interval: 2, box: 6 numbers); a rotation in 2D is the third of its three numbers.
 using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<NumberOrFormula>,
                            ParameterVariation, std::vector<std::string>, std::vector<KeyframeSettings>>;
 

@@ -7,9 +7,9 @@ namespace {
 
 using K = KeyBuilder;
 
-/// A field of ShapeSettings as one of the object's own, which is what a key is for.
-template <class Settings, class Field>
-Field Settings::*of(Field ShapeSettings::*member) {
+/// A field of a base as one of the object's own, which is what a key is for.
+template <class Settings, class Base, class Field>
+Field Settings::*of(Field Base::*member) {
   return member;
 }
 
@@ -70,7 +70,7 @@ std::vector<Key> file_keys() {
               "path starts at the scene file's folder."),
       K("scale", of<Settings>(&ShapeSettings::scale))
           .above(0)
-          .only_with("shape", {"polygon", "mesh"})
+          .only_with("shape", {"polygon", "mesh", "mesh_sequence", "level_set_sequence"})
           .help("Factor on the coordinates of the file."),
       K("depth", of<Settings>(&ShapeSettings::depth))
           .unit("m")
@@ -93,9 +93,9 @@ std::vector<Key> shape_keys(std::string_view default_name, std::string_view name
       K("name", of<Settings>(&ShapeSettings::name)).default_text(default_name).help(name_help),
       K("shape", of<Settings>(&ShapeSettings::shape))
           .required()
-          .help(
-              "half_space is all that lies behind a plane (a line in 2D); cylinder, cone, torus, height_field and mesh "
-              "are of 3D, polygon of 2D; union, intersection and difference are made of `parts`."),
+          .help("half_space is all that lies behind a plane (a line in 2D); cylinder, cone, torus, height_field, mesh "
+                "and sequences are of 3D, polygon of 2D; union, intersection and difference are made of `parts`. "
+                "Sequences change their form in time and are colliders only."),
   };
   for (const auto& more : {dimension_keys<Settings>(), file_keys<Settings>()}) {
     keys.insert(keys.end(), more.begin(), more.end());
@@ -103,35 +103,72 @@ std::vector<Key> shape_keys(std::string_view default_name, std::string_view name
   return keys;
 }
 
-std::vector<Key> collider_motion_keys() {
+std::vector<Key> sequence_keys() {
   return {
-      K("position", of<ColliderSettings>(&ShapeSettings::position))
+      K("meshes", &ColliderSettings::meshes)
+          .type(ValueType::files)
+          .path()
+          .required()
+          .only_with("shape", {"mesh_sequence"})
+          .help(
+              "Closed meshes (OBJ, PLY, STL) whose vertices move and whose triangles stay the same: a pattern such as "
+              "\"belt/belt_####.obj\", where #### is a number of at least four digits, or a list. The surface moves "
+              "as its vertices do, along itself too."),
+      K("level_sets", &ColliderSettings::level_sets)
+          .type(ValueType::files)
+          .path()
+          .required()
+          .only_with("shape", {"level_set_sequence"})
+          .help(
+              "OpenVDB files with a level set each: a pattern or a list. A vector grid named `v`, `vel` or `velocity` "
+              "gives the velocity along the surface; the one across follows from the motion."),
+      K("fps", &ColliderSettings::fps)
+          .unit("1/s")
+          .above(0)
+          .only_with("shape", {"mesh_sequence", "level_set_sequence"})
+          .default_text("none")
+          .help("Entries of the sequence per second, the first at t = 0; or give `times`."),
+      K("times", &ColliderSettings::times)
+          .unit("s")
+          .only_with("shape", {"mesh_sequence", "level_set_sequence"})
+          .default_text("none")
+          .help("When each entry of the sequence is reached. Before the first it is at rest."),
+      K("at_end", &ColliderSettings::at_end)
+          .only_with("shape", {"mesh_sequence", "level_set_sequence"})
+          .help("After the last entry: hold: at rest as it is there; cycle: once more from the first entry, whose form "
+                "is that of the last."),
+  };
+}
+
+template <class Settings>
+std::vector<Key> motion_keys() {
+  return {
+      K("position", of<Settings>(&ShapeSettings::position))
           .unit("m")
           .help("Centre at t = 0, or a point on the half space's plane; where the file's origin goes."),
-      K("rotation", of<ColliderSettings>(&ShapeSettings::rotation))
+      K("rotation", of<Settings>(&ShapeSettings::rotation))
           .type(ValueType::rotation)
           .unit("degrees")
           .help("At t = 0, about the fixed axes x, then y, then z; one angle in 2D."),
-      K("velocity", &ColliderSettings::velocity).unit("m/s").help("Constant."),
-      K("angular_velocity", &ColliderSettings::angular_velocity)
+      K("velocity", of<Settings>(&ColliderSettings::velocity)).unit("m/s").help("Constant."),
+      K("angular_velocity", of<Settings>(&ColliderSettings::angular_velocity))
           .type(ValueType::rotation)
           .unit("rad/s")
           .help("Constant, about `position`."),
-      K("keyframes", &ColliderSettings::keyframes)
+      K("keyframes", of<Settings>(&ColliderSettings::keyframes))
           .default_text("none")
           .help("Motion, instead of a velocity: { time = s, position = m, rotation = degrees, scale = factor } each; "
                 "what "
                 "is left out is `position`, `rotation` and 1. At rest before the first and after the last."),
-      K("trajectory", &ColliderSettings::trajectory)
+      K("trajectory", of<Settings>(&ColliderSettings::trajectory))
           .path()
           .default_text("none")
           .help("Motion from a text file: rows of time (s), position (m) and, if given, rotation (degrees): t, x, y, "
                 "z, rx, "
                 "ry, rz; in 2D t, x, y, angle. The path starts at the scene file's folder."),
-      K("interpolation", &ColliderSettings::interpolation)
-          .help(
-              "Between keyframes or rows: linear: constant velocities; smooth: continuous velocities, at rest at both "
-              "ends. Rotations go the shortest way."),
+      K("interpolation", of<Settings>(&ColliderSettings::interpolation))
+          .help("Between keyframes, rows or meshes of a sequence: linear: constant velocities; smooth: continuous "
+                "velocities, at rest at both ends. Rotations go the shortest way."),
   };
 }
 
@@ -152,15 +189,25 @@ Section make_part_section() {
 }
 
 Section make_collider_section() {
-  Section section = list_section("collider", &Scene::colliders, "A rigid obstacle; one [[collider]] each.");
-  section.keys = shape_keys<ColliderSettings>("collider<index>", "Names the collider.");
+  Section section = list_section("collider", &Scene::colliders, "An obstacle; one [[collider]] each.");
+  section.keys = shape_keys<ColliderSettings>("collider<index>",
+                                              "Names the collider, also in its columns of stats.csv: NAME.force_x, _y, "
+                                              "_z (N, mean over the frame, of the material on the collider), "
+                                              "NAME.torque_x, _y, _z (N m, about `position` where it moves), "
+                                              "NAME.inside and NAME.depth (particles inside, and the deepest, m), "
+                                              "NAME.caught (times that another collider held a particle inside).");
   section.keys.front().decides_result = false;
-  const std::vector<Key> motion = collider_motion_keys();
-  section.keys.insert(section.keys.end(), motion.begin(), motion.end());
+  for (const auto& added : {sequence_keys(), motion_keys<ColliderSettings>()}) {
+    section.keys.insert(section.keys.end(), added.begin(), added.end());
+  }
   const std::vector<Key> more = {
       K("contact", &ColliderSettings::contact)
           .help("sticky: what touches moves along; slip: slides and never leaves; separate: slides and may leave."),
       K("friction", &ColliderSettings::friction).at_least(0).help("Coulomb's coefficient, for slip and separate."),
+      K("push_out", &ColliderSettings::push_out)
+          .help(
+              "Particles that are inside, because a body was placed there, are moved to the nearest surface, by at most a "
+              "tenth of a cell per step."),
       K("color", &ColliderSettings::color)
           .type(ValueType::vector3)
           .at_least(0)
@@ -172,6 +219,27 @@ Section make_collider_section() {
           .presentation()
           .help("In pictures and the viewer: solid; glass: clear, mirrors the sky and casts no shadow; hidden: not "
                 "drawn."),
+  };
+  section.keys.insert(section.keys.end(), more.begin(), more.end());
+  return section;
+}
+
+Section make_pin_section() {
+  Section section = list_section("pin", &Scene::pins,
+                                 "A region that holds the material inside, or carries it along; one [[pin]] each.");
+  section.keys = shape_keys<PinSettings>("pin<index>", "Names the pin.");
+  section.keys.front().decides_result = false;
+  const std::vector<Key> motion = motion_keys<PinSettings>();
+  section.keys.insert(section.keys.end(), motion.begin(), motion.end());
+  const std::vector<Key> more = {
+      K("moves_with", &PinSettings::moves_with)
+          .default_text("none")
+          .help("Name of a [[collider]] that carries it along; `position` and `rotation` are those at t = 0."),
+      K("start", &PinSettings::start)
+          .unit("s")
+          .at_least(0)
+          .help("When it begins to act; a constant velocity begins then too, at `position`."),
+      K("stop", &PinSettings::stop).unit("s").above(0).default_text("never").help("When it ends."),
   };
   section.keys.insert(section.keys.end(), more.begin(), more.end());
   return section;

@@ -115,6 +115,8 @@ struct ShapeSettings {
     polygon,
     height_field,
     mesh,
+    mesh_sequence,
+    level_set_sequence,
     union_,
     intersection,
     difference
@@ -130,7 +132,7 @@ struct ShapeSettings {
   double length = 0;               ///< along `axis`, m
   Vec3d axis = {};                 ///< of capsule, cylinder, cone and torus; any length but zero
   std::string file;                ///< of polygon, height field and mesh, as written in the scene
-  double scale = 1;                ///< of the coordinates of polygon and mesh
+  double scale = 1;                ///< of the coordinates of polygon, mesh and sequence
   double depth = 0;                ///< of a height field below its lowest point, m
   std::vector<std::string> parts;  ///< names of Scene::parts
   bool inverted = false;
@@ -158,17 +160,110 @@ struct KeyframeSettings {
 struct ColliderSettings : ShapeSettings {
   enum class Contact { sticky, slip, separate };
   enum class Interpolation { linear, smooth };
+  enum class AtEnd { hold, cycle };
   enum class Look { solid, glass, hidden };
 
-  Vec3d velocity = {};          ///< m/s
-  Vec3d angular_velocity = {};  ///< rad/s, about `position`
+  std::vector<std::string> meshes;      ///< files or patterns, as written in the scene; of a mesh sequence
+  std::vector<std::string> level_sets;  ///< the same of a level set sequence
+  std::optional<double> fps;            ///< entries of a sequence per second, 1/s; without it, `times`
+  std::vector<double> times;            ///< of the entries of a sequence, s
+  AtEnd at_end = AtEnd::hold;           ///< of a sequence
+  Vec3d velocity = {};                  ///< m/s
+  Vec3d angular_velocity = {};          ///< rad/s, about `position`
   std::vector<KeyframeSettings> keyframes;
   std::string trajectory;  ///< file, as written in the scene; "" without
   Interpolation interpolation = Interpolation::linear;
   Contact contact = Contact::separate;
   double friction = 0;
+  bool push_out = false;       ///< whether particles inside are moved to the surface
   std::optional<Vec3d> color;  ///< linear RGB
   Look look = Look::solid;
+
+  bool is_sequence() const { return shape == Shape::mesh_sequence || shape == Shape::level_set_sequence; }
+};
+
+/// How a place moves: not at all, with a collider, or by itself.
+struct CarriedSettings {
+  std::string moves_with;                   ///< name of one of Scene::colliders; "" without
+  std::vector<KeyframeSettings> keyframes;  ///< instead of position and rotation
+  std::string trajectory;                   ///< file, as written in the scene; "" without
+  ColliderSettings::Interpolation interpolation = ColliderSettings::Interpolation::linear;
+};
+
+/// Where an emitter or a sink is: as a body, but without its own material.
+struct RegionSettings : CarriedSettings {
+  std::string name;
+  std::string mesh;                          ///< file, as written in the scene; "" unless the region is a mesh
+  std::string polygon;                       ///< file, as written in the scene; "" unless the region is a polygon
+  std::optional<BodySettings::Shape> shape;  ///< set unless the region is a mesh or a polygon
+  Vec3d size = {};                           ///< edge lengths of a box, m
+  double radius = 0;                         ///< of a sphere or disk, m
+  double scale = 1;
+  BodySettings::Units units = BodySettings::Units::m;  ///< of the file's coordinates
+  Vec3d rotation = {};                                 ///< degrees, about x, then y, then z
+  Vec3d position = {};                                 ///< m
+  double start = 0;                                    ///< s
+  std::optional<double> stop;                          ///< s; without it: never
+};
+
+/// One of mass_rate, volume_rate and keep_full is set.
+struct EmitterSettings : RegionSettings {
+  std::string material;               ///< name of one of Scene::materials
+  Vec3d velocity = {};                ///< m/s
+  std::optional<double> mass_rate;    ///< kg/s (per metre of thickness in 2D)
+  std::optional<double> volume_rate;  ///< m^3/s (m^2/s in 2D)
+  std::optional<bool> keep_full;      ///< true if set
+  std::optional<Vec3d> color;         ///< linear RGB
+};
+
+struct SinkSettings : RegionSettings {};
+
+/// An acceleration of particles besides gravity.
+struct FieldSettings {
+  enum class Type { acceleration, attractor, vortex, wind };
+
+  std::string name;
+  Type type = Type::acceleration;
+  std::array<NumberOrFormula, 3> acceleration = {};  ///< m/s^2; formulas of x, y, z (m) and t (s)
+  Vec3d position = {};                               ///< centre of an attractor or vortex, m
+  Vec3d axis = {};                                   ///< of a vortex; unit length; z in 2D
+  double radius = 0;                                 ///< where the strength is reached, m
+  double strength = 0;                               ///< m/s^2
+  std::array<NumberOrFormula, 3> velocity = {};      ///< of the wind, m/s; formulas of x, y, z (m) and t (s)
+  double response_time = 0;                          ///< in which the wind takes a particle along, s
+  std::optional<LimitSettings::Box> box;             ///< acts only inside
+  double start = 0;                                  ///< s
+  std::optional<double> stop;                        ///< s; without it: never
+};
+
+/// A region that holds the material inside, or carries it along: a sticky collider that may be full. A constant
+/// velocity begins at `start`, with the pin at `position`. Of a collider's settings, contact, friction and colour are
+/// not used.
+struct PinSettings : ColliderSettings {
+  std::string moves_with;      ///< name of one of Scene::colliders; "" without
+  double start = 0;            ///< s
+  std::optional<double> stop;  ///< s; without it: never
+};
+
+/// A force per area on the part of the bodies' surface that lies inside a region at t = 0. One of pressure and stress
+/// is set.
+struct TractionSettings : RegionSettings {
+  std::string body;                                           ///< name of one of Scene::bodies; "" for all
+  std::optional<NumberOrFormula> pressure;                    ///< Pa, into the body; formula of x, y, z (m) and t (s)
+  std::optional<std::array<NumberOrFormula, 3>> stress = {};  ///< Pa; formulas of x, y, z (m) and t (s)
+  Vec3d normal = {};                                          ///< of the face that stress acts on, out of the body
+};
+
+/// Points at which density, velocity and pressure are written for every frame.
+struct ProbeSettings {
+  enum class Shape { point, line, plane };
+
+  std::string name;
+  Shape shape = Shape::point;
+  Vec3d position = {};     ///< the point, or the first of a line or plane, m
+  Vec3d end = {};          ///< last point of a line or of a plane's first edge, m
+  Vec3d corner = {};       ///< last point of a plane's second edge, m
+  std::int64_t count = 0;  ///< points along a line or along each edge of a plane
 };
 
 struct CameraSettings {
@@ -226,6 +321,12 @@ struct Scene {
   std::vector<BodySettings> bodies;
   std::vector<PartSettings> parts;
   std::vector<ColliderSettings> colliders;
+  std::vector<EmitterSettings> emitters;
+  std::vector<SinkSettings> sinks;
+  std::vector<FieldSettings> fields;
+  std::vector<PinSettings> pins;
+  std::vector<TractionSettings> tractions;
+  std::vector<ProbeSettings> probes;
   CameraSettings camera;
   RenderSettings render;
   OutputSettings output;

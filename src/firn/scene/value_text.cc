@@ -33,11 +33,15 @@ std::string numbers_text(ValueType type, const std::vector<double>& numbers, int
   }
 }
 
+std::string formula_text(const NumberOrFormula& value) {
+  return value.formula.empty() ? number_text(value.number) : in_quotes(value.formula);
+}
+
 std::string formulas_text(const std::vector<NumberOrFormula>& formulas, int dimension) {
   std::string text = "[";
   for (std::size_t i = 0; i < static_cast<std::size_t>(dimension); ++i) {
     if (i > 0) text += ", ";
-    text += formulas[i].formula.empty() ? number_text(formulas[i].number) : in_quotes(formulas[i].formula);
+    text += formula_text(formulas[i]);
   }
   return text + "]";
 }
@@ -118,7 +122,9 @@ std::string value_text(const Key& key, const Value& value, int dimension) {
     std::string operator()(const std::string& s) const { return in_quotes(s); }
     std::string operator()(const std::vector<double>& v) const { return numbers_text(type, v, dimension); }
     std::string operator()(const ParameterVariation& v) const { return variation_text(v); }
-    std::string operator()(const std::vector<NumberOrFormula>& v) const { return formulas_text(v, dimension); }
+    std::string operator()(const std::vector<NumberOrFormula>& v) const {
+      return type == ValueType::formula ? formula_text(v.front()) : formulas_text(v, dimension);
+    }
     std::string operator()(const std::vector<std::string>& v) const { return fmt::format("[{}]", join_quoted(v)); }
     std::string operator()(const std::vector<KeyframeSettings>& v) const {
       std::string text;

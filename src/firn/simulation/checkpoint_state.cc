@@ -95,6 +95,28 @@ void require_cells(const CheckpointMaterial& saved, const std::vector<std::uint6
   }
 }
 
+constexpr std::array<const char*, 3> kAxes = {"_x", "_y", "_z"};
+
+void save_vector(const Vec3d& vector, const std::string& name, CheckpointState& state) {
+  for (int i = 0; i < 3; ++i) state.numbers[name + kAxes[static_cast<std::size_t>(i)]] = vector[i];
+}
+
+Vec3d vector_of(const CheckpointState& state, const std::string& name) {
+  Vec3d vector;
+  for (int i = 0; i < 3; ++i) vector[i] = number_of(state, name + kAxes[static_cast<std::size_t>(i)]);
+  return vector;
+}
+
+/// Whether any number or counter has a name that begins so: one that was lost alone is missed, a group that was never
+/// there is not.
+bool has_any(const CheckpointState& state, const std::string& prefix) {
+  const auto is_in = [&](const auto& entries) {
+    const auto first = entries.lower_bound(prefix);
+    return first != entries.end() && first->first.starts_with(prefix);
+  };
+  return is_in(state.numbers) || is_in(state.counters);
+}
+
 }  // namespace
 
 template <class Real, int dim>
@@ -162,7 +184,7 @@ MaterialSpeeds load_speeds(const CheckpointMaterial& saved) {
   return speeds;
 }
 
-void save_report(const FrameReport& report, CheckpointState& state) {
+void save_report(const FrameReport& report, const Scene& scene, CheckpointState& state) {
   state.counters["report.frame"] = report.frame;
   state.counters["report.steps"] = report.steps;
   state.counters["report.particles"] = report.particles;
@@ -172,9 +194,19 @@ void save_report(const FrameReport& report, CheckpointState& state) {
   state.numbers["report.dt"] = report.dt;
   state.numbers["report.wall_seconds"] = report.wall_seconds;
   state.texts["report.limit"] = report.limit;
+  // Only the end of a frame has them.
+  for (std::size_t k = 0; k < report.colliders.size(); ++k) {
+    const ColliderReport& collider = report.colliders[k];
+    const std::string name = fmt::format("report.collider.{}.", scene.colliders[k].name);
+    save_vector(collider.force, name + "force", state);
+    save_vector(collider.torque, name + "torque", state);
+    state.numbers[name + "depth"] = collider.inside.depth;
+    state.counters[name + "inside"] = collider.inside.particles;
+    state.counters[name + "caught"] = collider.caught;
+  }
 }
 
-FrameReport load_report(const CheckpointState& state) {
+FrameReport load_report(const CheckpointState& state, const Scene& scene) {
   FrameReport report;
   report.frame = counter_of(state, "report.frame");
   report.steps = counter_of(state, "report.steps");
@@ -185,8 +217,74 @@ FrameReport load_report(const CheckpointState& state) {
   report.dt = number_of(state, "report.dt");
   report.wall_seconds = number_of(state, "report.wall_seconds");
   report.limit = text_of(state, "report.limit");
+  if (!has_any(state, "report.collider.")) return report;
+  for (const ColliderSettings& settings : scene.colliders) {
+    const std::string name = fmt::format("report.collider.{}.", settings.name);
+    ColliderReport& collider = report.colliders.emplace_back();
+    if (!has_any(state, name)) continue;
+    collider.force = vector_of(state, name + "force");
+    collider.torque = vector_of(state, name + "torque");
+    collider.inside = {counter_of(state, name + "inside"), number_of(state, name + "depth")};
+    collider.caught = counter_of(state, name + "caught");
+  }
   return report;
 }
+
+void save_loads(const std::vector<ColliderLoad>& loads, const Scene& scene, CheckpointState& state) {
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+    const ColliderLoad load = k < loads.size() ? loads[k] : ColliderLoad{};
+    const std::string name = fmt::format("collider.{}.", scene.colliders[k].name);
+    save_vector(load.impulse, name + "impulse", state);
+    save_vector(load.angular_impulse, name + "angular_impulse", state);
+    state.counters[name + "caught"] = load.caught;
+  }
+}
+
+std::vector<ColliderLoad> load_loads(const CheckpointState& state, const Scene& scene) {
+  std::vector<ColliderLoad> loads;
+  for (const ColliderSettings& settings : scene.colliders) {
+    const std::string name = fmt::format("collider.{}.", settings.name);
+    ColliderLoad& load = loads.emplace_back();
+    if (!has_any(state, name)) continue;
+    load.impulse = vector_of(state, name + "impulse");
+    load.angular_impulse = vector_of(state, name + "angular_impulse");
+    load.caught = counter_of(state, name + "caught");
+  }
+  return loads;
+}
+
+template <class Object>
+void save_counts(const std::vector<SourceCount>& counts, const std::vector<Object>& objects, std::string_view kind,
+                 CheckpointState& state) {
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const std::string name = fmt::format("{}.{}.", kind, objects[i].name);
+    state.counters[name + "particles"] = counts[i].particles;
+    state.numbers[name + "mass"] = counts[i].mass;
+  }
+}
+
+template <class Object>
+std::vector<SourceCount> load_counts(const CheckpointState& state, const std::vector<Object>& objects,
+                                     std::string_view kind) {
+  std::vector<SourceCount> counts;
+  for (const Object& object : objects) {
+    const std::string name = fmt::format("{}.{}.", kind, object.name);
+    counts.push_back({counter_of(state, name + "particles"), number_of(state, name + "mass")});
+    if (counts.back().particles >= 0) continue;
+    throw Error(ErrorKind::files,
+                fmt::format("the checkpoint cannot be used: \"{}particles\" is {}", name, counts.back().particles));
+  }
+  return counts;
+}
+
+template void save_counts<EmitterSettings>(const std::vector<SourceCount>&, const std::vector<EmitterSettings>&,
+                                           std::string_view, CheckpointState&);
+template void save_counts<SinkSettings>(const std::vector<SourceCount>&, const std::vector<SinkSettings>&,
+                                        std::string_view, CheckpointState&);
+template std::vector<SourceCount> load_counts<EmitterSettings>(const CheckpointState&,
+                                                               const std::vector<EmitterSettings>&, std::string_view);
+template std::vector<SourceCount> load_counts<SinkSettings>(const CheckpointState&, const std::vector<SinkSettings>&,
+                                                            std::string_view);
 
 double number_of(const CheckpointState& state, std::string_view name) { return entry(state.numbers, name); }
 std::int64_t counter_of(const CheckpointState& state, std::string_view name) { return entry(state.counters, name); }

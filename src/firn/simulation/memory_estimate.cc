@@ -33,11 +33,21 @@ double particle_bytes(const Scene& scene, const MaterialSettings& material) {
   return ParticleLayout::of(scene.dimension, static_cast<int>(real_bytes(scene)), options).bytes;
 }
 
+double all_particles(const Scene& scene, const WorldPlan& plan) {
+  auto particles = static_cast<double>(plan.particles);
+  for (const EmitterSettings& emitter : scene.emitters) particles += emitted_particles(scene, emitter, plan);
+  return particles;
+}
+
 double all_particle_bytes(const Scene& scene, const WorldPlan& plan) {
   double bytes = 0;
   for (std::size_t b = 0; b < plan.bodies.size() && b < scene.bodies.size(); ++b) {
     const MaterialSettings* material = scene.find_material(scene.bodies[b].material);
     if (material) bytes += static_cast<double>(plan.bodies[b].particles) * particle_bytes(scene, *material);
+  }
+  for (const EmitterSettings& emitter : scene.emitters) {
+    const MaterialSettings* material = scene.find_material(emitter.material);
+    if (material) bytes += emitted_particles(scene, emitter, plan) * particle_bytes(scene, *material);
   }
   return bytes;
 }
@@ -45,8 +55,8 @@ double all_particle_bytes(const Scene& scene, const WorldPlan& plan) {
 double grid_bytes(const Scene& scene, const WorldPlan& plan) {
   const auto kernel = static_cast<Kernel>(scene.method.kernel);
   const double tile = scene.dimension == 3 ? tile_nodes<3>(kernel) : tile_nodes<2>(kernel);
-  const double blocks = kSurfaceShare * static_cast<double>(plan.particles) /
-                        (kBlockCells * std::max(scene.resolution.particles_per_cell, 1.0));
+  const double blocks =
+      kSurfaceShare * all_particles(scene, plan) / (kBlockCells * std::max(scene.resolution.particles_per_cell, 1.0));
   return blocks * (tile + kBlockCells) * kNodeWidth * real_bytes(scene);
 }
 
@@ -56,13 +66,21 @@ std::string size_text(double bytes) {
 
 }  // namespace
 
+double emitted_particles(const Scene& scene, const EmitterSettings& emitter, const WorldPlan& plan) {
+  if (emitter.keep_full) return 0;
+  const double volume_rate =
+      emitter.volume_rate ? *emitter.volume_rate : *emitter.mass_rate / scene.find_material(emitter.material)->density;
+  const double end = std::min(scene.end_time, emitter.stop.value_or(scene.end_time));
+  return std::max(0.0, end - emitter.start) * volume_rate / plan.particle_volume;
+}
+
 double checkpoint_bytes(const Scene& scene, const WorldPlan& plan) {
   // A key of 8 bytes in place of the cell's number in its block.
-  return all_particle_bytes(scene, plan) + 7 * static_cast<double>(plan.particles);
+  return all_particle_bytes(scene, plan) + 7 * all_particles(scene, plan);
 }
 
 std::vector<MemoryUse> memory_estimate(const Scene& scene, const WorldPlan& plan) {
-  const auto particles = static_cast<double>(plan.particles);
+  const double particles = all_particles(scene, plan);
   const double columns = all_particle_bytes(scene, plan);
   std::vector<MemoryUse> uses = {
       {"the columns of the particles", columns},
@@ -89,7 +107,8 @@ std::string memory_message(const Scene& scene, const WorldPlan* plan) {
   for (const MemoryUse& use : memory_estimate(scene, *plan)) {
     list += fmt::format("{}{} {}", list.empty() ? "" : ", ", use.name, size_text(use.bytes));
   }
-  return fmt::format("out of memory: {} particles need, as far as can be told, {}; {}", plan->particles, list, kAdvice);
+  return fmt::format("out of memory: {:.0f} particles need, as far as can be told, {}; {}", all_particles(scene, *plan),
+                     list, kAdvice);
 }
 
 }  // namespace firn

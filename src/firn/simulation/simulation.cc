@@ -9,6 +9,7 @@
 #include <firn/simulation/checkpoint_state.h>
 #include <firn/simulation/runaways.h>
 #include <firn/simulation/simulation.h>
+#include <firn/simulation/sources.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <tbb/global_control.h>
@@ -22,6 +23,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -49,11 +51,16 @@ class SimulationOf final : public Simulation {
     world_ = std::make_unique<World<Real, dim>>(std::move(built.world));
     set_limits();
     for (const auto& material : world_->materials) material_names_.push_back(material.name);
+    sources_ = std::make_unique<Sources<Real, dim>>(scene_, plan_, *world_);
     StepReport prepared;
-    arena_.execute([&] { prepared = prepare(*world_); });
+    arena_.execute([&] {
+      prepared = prepare(*world_);
+      if (!prepared.failure) sources_->act(*world_);
+    });
     if (prepared.failure) fail(*prepared.failure, 0);
-    report_.particles = particle_count();
     report_.limit = "start";
+    report_.colliders = collider_reports(0);
+    note_particles();
   }
 
   double time() const override { return world_->t; }
@@ -66,9 +73,12 @@ class SimulationOf final : public Simulation {
     TimeStep taken;
     std::optional<ParticleFailure> failure;
     arena_.execute([&] {
-      taken = choose_time_step(*world_, limits_, until - world_->t);
+      sources_->set_pins(*world_);
+      taken = choose_step(world_->t, until);
       failure = step_explicit(*world_, taken.dt).failure;
-      if (!failure) guard_.park_fast(*world_);
+      if (failure) return;
+      guard_.park_fast(*world_);
+      sources_->act(*world_);
     });
     if (failure) fail(*failure, taken.dt);
     return taken;
@@ -159,7 +169,8 @@ class SimulationOf final : public Simulation {
     snapshot.time = world_->t;
     snapshot.cell_size = world_->grid.dx();
     for (const BodySettings& body : scene_.bodies) snapshot.bodies.push_back(body.name);
-    double smallest = 0;
+    for (const EmitterSettings& emitter : scene_.emitters) snapshot.bodies.push_back(emitter.name);
+    double smallest = scene_.emitters.empty() ? 0 : plan_.particle_volume;
     for (const WorldPlan::Body& body : plan_.bodies) {
       const double each = body.volume / static_cast<double>(body.particles);
       smallest = smallest == 0 ? each : std::min(smallest, each);
@@ -190,6 +201,21 @@ class SimulationOf final : public Simulation {
     return sum;
   }
 
+  std::vector<ProbeValue> probe(std::span<const Vec3d> points) const override {
+    std::vector<Vec<double, dim>> places(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) std::copy_n(points[i].e, dim, places[i].e);
+    std::vector<ProbeSums> sums(points.size());
+    arena_.execute([&] {
+      for (const auto& material : world_->materials) {
+        add_to_probes<Real, dim>(places, material.particles, material.model, material.parameters, world_->grid.dx(),
+                                 world_->transfer.kernel, world_->grid.period(), sums);
+      }
+    });
+    std::vector<ProbeValue> values;
+    for (const ProbeSums& sum : sums) values.push_back(probe_value(sum, world_->grid.dx(), dim));
+    return values;
+  }
+
   std::uint64_t hash() const override {
     std::vector<std::reference_wrapper<const Particles<Real, dim>>> particles;
     for (const auto& material : world_->materials) particles.push_back(material.particles);
@@ -204,6 +230,9 @@ class SimulationOf final : public Simulation {
     double t = 0, max_speed = 0, max_collider_speed = 0;
     std::uint64_t steps = 0;
     std::int64_t parked = 0;
+    typename Sources<Real, dim>::Counts counts = {};
+    double loads_since = 0;  ///< s
+    std::vector<ColliderLoad> loads = {};
     FrameReport report = {};
   };
 
@@ -231,6 +260,9 @@ class SimulationOf final : public Simulation {
     kept_->max_collider_speed = world_->max_collider_speed;
     kept_->steps = world_->steps;
     kept_->parked = guard_.parked();
+    kept_->counts = sources_->counts();
+    kept_->loads_since = loads_since_;
+    kept_->loads = world_->collider_loads;
     kept_->report = report_;
   }
 
@@ -255,12 +287,24 @@ class SimulationOf final : public Simulation {
     state.numbers["time"] = at.t;
     state.numbers["max_speed"] = at.max_speed;
     state.numbers["max_collider_speed"] = at.max_collider_speed;
+    state.numbers["travelled"] = at.counts.travelled;
+    state.numbers["loads_since"] = at.loads_since;
     state.counters["steps"] = static_cast<std::int64_t>(at.steps);
     state.counters["parked"] = at.parked;
     state.counters["frame"] = frame_;
     state.counters["halvings"] = halvings_;
-    save_report(at.report, state);
+    save_report(at.report, scene_, state);
+    save_loads(at.loads, scene_, state);
+    save_counts(at.counts.emitted, scene_.emitters, "emitter", state);
+    save_counts(at.counts.removed, scene_.sinks, "sink", state);
+    for (std::size_t e = 0; e < scene_.emitters.size(); ++e) {
+      state.counters[last_slot_name(e)] = at.counts.last_slot[e];
+    }
     return state;
+  }
+
+  std::string last_slot_name(std::size_t emitter) const {
+    return fmt::format("emitter.{}.last_slot", scene_.emitters[emitter].name);
   }
 
   CheckpointState kept_state() const {
@@ -278,6 +322,9 @@ class SimulationOf final : public Simulation {
     now.max_collider_speed = world_->max_collider_speed;
     now.steps = world_->steps;
     now.parked = guard_.parked();
+    now.counts = sources_->counts();
+    now.loads_since = loads_since_;
+    now.loads = world_->collider_loads;
     now.report = report_;
     CheckpointState state = clock_state(now);
     for (const auto& material : world_->materials) {
@@ -305,14 +352,24 @@ class SimulationOf final : public Simulation {
     kept.max_collider_speed = number_of(state, "max_collider_speed");
     kept.steps = static_cast<std::uint64_t>(counter_of(state, "steps"));
     kept.parked = counter_of(state, "parked");
-    kept.report = load_report(state);
+    kept.counts.emitted = load_counts(state, scene_.emitters, "emitter");
+    kept.counts.removed = load_counts(state, scene_.sinks, "sink");
+    for (std::size_t e = 0; e < scene_.emitters.size(); ++e) {
+      kept.counts.last_slot.push_back(counter_of(state, last_slot_name(e)));
+    }
+    kept.counts.travelled = number_of(state, "travelled");
+    kept.loads_since = number_of(state, "loads_since");
+    kept.loads = load_loads(state, scene_);
+    kept.report = load_report(state, scene_);
+    kept.report.emitted = kept.counts.emitted;
+    kept.report.removed = kept.counts.removed;
     restored.frame = counter_of(state, "frame");
     restored.halvings = static_cast<int>(counter_of(state, "halvings"));
     for (std::size_t m = 0; m < state.materials.size(); ++m) {
       kept.speeds.push_back(load_speeds(state.materials[m]));
       arena_.execute([&] {
-        kept.particles.push_back(
-            load_particles(state.materials[m], world_->materials[m], world_->transfer.flip > 0, scene_.bodies.size()));
+        kept.particles.push_back(load_particles(state.materials[m], world_->materials[m], world_->transfer.flip > 0,
+                                                scene_.bodies.size() + scene_.emitters.size()));
       });
     }
     return restored;
@@ -346,6 +403,9 @@ class SimulationOf final : public Simulation {
     arena_.execute([&] { activate_blocks(*world_); });
     world_->steps = kept_->steps;
     guard_.restore(kept_->parked);
+    sources_->restore(kept_->counts);
+    loads_since_ = kept_->loads_since;
+    world_->collider_loads = kept_->loads;
   }
 
   void retry(const ParticleFailure& failure) {
@@ -365,15 +425,57 @@ class SimulationOf final : public Simulation {
   /// @param promised the next step, where a paused frame goes on
   std::optional<ParticleFailure> try_frame(const std::optional<TimeStep>& promised, const Pause& pause) {
     std::optional<ParticleFailure> failure;
+    if (!promised) {
+      loads_since_ = world_->t;
+      world_->collider_loads.assign(world_->colliders.size(), {});
+    }
     arena_.execute([&] { failure = try_steps(frame_time(frame_ + 1), promised, pause); });
     if (failure || paused_) return failure;
     arena_.execute([&] { guard_.park_far(*world_); });
     ++frame_;
     report_.frame = frame_;
     report_.time = world_->t;
+    report_.colliders = collider_reports(world_->t - loads_since_);
+    note_particles();
+    return std::nullopt;
+  }
+
+  void note_particles() {
     report_.particles = particle_count();
     report_.parked = guard_.parked();
-    return std::nullopt;
+    report_.emitted = sources_->counts().emitted;
+    report_.removed = sources_->counts().removed;
+  }
+
+  /// How long a step from time t is, of those that lead to the next event or to the end of the frame.
+  TimeStep choose_step(double t, double until) const {
+    const auto bound = sources_->longest_step(*world_, t, limits_.particle_cfl);
+    TimeStepLimits limits = limits_;
+    limits.max_dt = std::min(limits_.max_dt, bound.dt);
+    TimeStep step = choose_time_step(*world_, limits, std::min(until, sources_->next_event(t)) - t);
+    if (step.limit == "max_dt" && bound.dt < limits_.max_dt) step.limit = bound.limit;
+    return step;
+  }
+
+  /// Of the scene's colliders, behind which the world has its pins.
+  /// @param duration how long the loads have been counted, s; 0 for not at all
+  std::vector<ColliderReport> collider_reports(double duration) const {
+    const auto solids = std::span<const Collider<dim>>(world_->colliders).first(scene_.colliders.size());
+    std::vector<ColliderReport> reports(solids.size());
+    for (std::size_t k = 0; k < reports.size() && duration > 0; ++k) {
+      const ColliderLoad& load = world_->collider_loads[k];
+      reports[k].force = (1 / duration) * load.impulse;
+      reports[k].torque = (1 / duration) * load.angular_impulse;
+      reports[k].caught = load.caught;
+    }
+    arena_.execute([&] {
+      for (const auto& material : world_->materials) {
+        const auto inside = measure_penetration<Real, dim>(material.particles, world_->grid.dx(),
+                                                           world_->transfer.kernel, solids, world_->t);
+        for (std::size_t k = 0; k < reports.size(); ++k) reports[k].inside += inside[k];
+      }
+    });
+    return reports;
   }
 
   std::optional<ParticleFailure> try_steps(double until, const std::optional<TimeStep>& promised, const Pause& pause) {
@@ -381,17 +483,19 @@ class SimulationOf final : public Simulation {
       report_ = {};
       report_.dt = std::numeric_limits<double>::infinity();
     }
-    TimeStep next = promised ? *promised : choose_time_step(*world_, limits_, until - world_->t);
+    TimeStep next = promised ? *promised : choose_step(world_->t, until);
     while (world_->t < until) {
       const TimeStep taken = next;
       bool drained = false, stop = false;
+      sources_->set_pins(*world_);
       const StepReport step = step_explicit(*world_, taken.dt, [&] {
         stop = pause && pause();
         // What is left behind the last step of a frame is round-off.
         const double remaining = until - (world_->t + taken.dt);
-        drained = remaining < 1e-9 * taken.dt || guard_.may_park(*world_);
+        const bool due = sources_->due(*world_, taken.dt);
+        drained = remaining < 1e-9 * taken.dt || guard_.may_park(*world_) || due;
         if (drained) return 0.0;
-        next = choose_time_step(*world_, limits_, remaining);
+        next = choose_step(world_->t + taken.dt, until);
         drained = !(next.dt > 0);
         // To stop drains the state as well, but the next step stays the one that is chosen here: the step after a pause
         // must be as long as without it.
@@ -402,11 +506,10 @@ class SimulationOf final : public Simulation {
       if (drained) {
         guard_.park_fast(*world_);
         // The last step of a frame lands on its time.
-        if (until - world_->t < 1e-9 * taken.dt) {
-          world_->t = until;
-        } else {
-          next = choose_time_step(*world_, limits_, until - world_->t);
-        }
+        const bool is_last = until - world_->t < 1e-9 * taken.dt;
+        if (is_last) world_->t = until;
+        sources_->act(*world_);
+        if (!is_last) next = choose_step(world_->t, until);
       }
       if (stop && world_->t < until) {
         paused_ = {next, 0};
@@ -448,6 +551,7 @@ class SimulationOf final : public Simulation {
   mutable tbb::task_arena arena_;
   std::optional<tbb::global_control> thread_limit_;
   std::unique_ptr<World<Real, dim>> world_;
+  std::unique_ptr<Sources<Real, dim>> sources_;
   TimeStepLimits limits_;
   RunawayGuard<Real, dim> guard_;
   std::vector<std::string> material_names_;
@@ -456,6 +560,7 @@ class SimulationOf final : public Simulation {
   std::optional<Paused> paused_;
   std::string limit_name_;  ///< of a restored next step, which refers to it
   FrameReport report_;
+  double loads_since_ = 0;  ///< s; when the loads of colliders were last set to zero
 };
 
 }  // namespace

@@ -2,18 +2,31 @@
 
 #include <firn/integrators/time_step.h>
 #include <firn/io/checkpoint.h>
+#include <firn/measure/penetration.h>
+#include <firn/measure/probe.h>
 #include <firn/measure/totals.h>
 #include <firn/scene/build_world.h>
 #include <firn/scene/settings.h>
+#include <firn/simulation/source_count.h>
 #include <firn/state/snapshot.h>
 
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace firn {
+
+/// How material and a collider stand to each other. In 2D forces are per metre of thickness.
+struct ColliderReport {
+  Vec3d force = {};         ///< of the material on the collider, mean since the frame before, N
+  Vec3d torque = {};        ///< the same about the collider's own origin, its `position`, wherever that moves, N m
+  Penetration inside = {};  ///< particles inside it now
+  std::int64_t caught = 0;  ///< see ColliderLoad, since the frame before
+};
 
 /// What one frame came to.
 struct FrameReport {
@@ -26,6 +39,8 @@ struct FrameReport {
   std::int64_t parked = 0;  ///< since the start
   int retries = 0;          ///< times that the frame was taken back and computed with smaller steps
   double wall_seconds = 0;
+  std::vector<ColliderReport> colliders = {};           ///< in the order of the scene
+  std::vector<SourceCount> emitted = {}, removed = {};  ///< by each emitter and each sink
 };
 
 /// Asked after each step; true: stop there.
@@ -77,6 +92,9 @@ class Simulation {
 
   virtual Snapshot snapshot() const = 0;
   virtual Totals totals() const = 0;
+
+  /// Density, velocity and pressure at these points, m.
+  virtual std::vector<ProbeValue> probe(std::span<const Vec3d> points) const = 0;
 
   /// Seconds spent in each verb of the step since the start.
   virtual VerbTimes verb_times() const = 0;

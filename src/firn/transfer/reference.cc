@@ -4,12 +4,18 @@
 namespace firn {
 namespace {
 
-/// body(i, w_ip, grad w_ip, x_i - x_p) for the nodes i that particle p touches.
+/// A node that a particle touches: number of the collider that it is hidden behind, and its index.
+template <int dim>
+using NodeKey = std::pair<int, Index<dim>>;
+
+/// body(node, w_ip, grad w_ip, x_i - x_p, n) for the nodes that particle p touches, with the normal of the wall
+/// between.
 template <class Real, int dim, class Body>
 void for_each_node(const Particles<Real, dim>& particles, std::size_t p, double dx, Kernel kernel,
-                   const Period<dim>& period, const Body& body) {
+                   const Period<dim>& period, const HiddenBehind<dim>& behind, const Body& body) {
   const int degree = static_cast<int>(kernel) + 1;
   const Index<dim> cell = cell_of_key<dim>(particles.cell(p));
+  const Vec<double, dim> x = particles.position(p, dx, kernel);
   double s[dim], N[dim][4], dN[dim][4];
   for (int d = 0; d < dim; ++d) {
     s[d] = static_cast<double>(particles.real(Field::offset, d)[p]);
@@ -31,7 +37,9 @@ void for_each_node(const Particles<Real, dim>& particles, std::size_t p, double 
       w *= N[d][a];
       for (int e = 0; e < dim; ++e) grad_w[e] *= e == d ? dN[d][a] : N[d][a];
     }
-    body(i, w, grad_w, r);
+    Vec<double, dim> n_wall = {};
+    const int collider = behind ? behind(x, x + r, n_wall) : -1;
+    body(NodeKey<dim>{collider, i}, w, grad_w, r, n_wall);
   }
 }
 
@@ -80,7 +88,7 @@ double b_spline_derivative(int degree, int a, double s) {
 
 template <class Real, int dim>
 void reference_scatter(const Particles<Real, dim>& particles, double dx, double dt, const TransferSettings& settings,
-                       const Period<dim>& period, ReferenceGrid<dim>& grid) {
+                       const Period<dim>& period, const HiddenBehind<dim>& behind, ReferenceGrid<dim>& grid) {
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const double m = static_cast<double>(particles.real(Field::mass)[p]);
     const double V0 = static_cast<double>(particles.real(Field::rest_volume)[p]);
@@ -89,37 +97,39 @@ void reference_scatter(const Particles<Real, dim>& particles, double dx, double 
         particles.has(Field::acceleration) ? vector(particles, Field::acceleration, p) : Vec<double, dim>{};
     const Mat<double, dim> C = settings.affine * affine_matrix(particles, p);
     const Mat<double, dim> tau = kirchhoff(particles, p);
-    for_each_node<Real, dim>(
-        particles, p, dx, settings.kernel, period,
-        [&](const Index<dim>& i, double w, const Vec<double, dim>& grad_w, const Vec<double, dim>& r) {
-          ReferenceNode<dim>& node = grid[i];
-          const Vec<double, dim> before = (w * m) * (v + C * r);
-          const Vec<double, dim> force =
-              settings.form == Form::mls ? (-V0 / inertia(settings.kernel, dx) * w) * (tau * r) : -V0 * (tau * grad_w);
-          node.mass += w * m;
-          node.momentum_before += before;
-          node.momentum += before + (w * m * dt) * b + dt * force;
-        });
+    for_each_node<Real, dim>(particles, p, dx, settings.kernel, period, behind,
+                             [&](const NodeKey<dim>& i, double w, const Vec<double, dim>& grad_w,
+                                 const Vec<double, dim>& r, const Vec<double, dim>& n) {
+                               ReferenceNode<dim>& node = grid[i];
+                               const Vec<double, dim> before = (w * m) * (v + C * r);
+                               const Vec<double, dim> force = settings.form == Form::mls
+                                                                  ? (-V0 / inertia(settings.kernel, dx) * w) * (tau * r)
+                                                                  : -V0 * (tau * grad_w);
+                               node.mass += w * m;
+                               node.wall_normal += (w * m) * n;
+                               node.momentum_before += before;
+                               node.momentum += before + (w * m * dt) * b + dt * force;
+                             });
   }
 }
 
 template <class Real, int dim>
 std::vector<Vec<double, dim>> reference_gather(Particles<Real, dim>& particles, double dx,
                                                const TransferSettings& settings, const Period<dim>& period,
-                                               const ReferenceGrid<dim>& grid) {
+                                               const HiddenBehind<dim>& behind, const ReferenceGrid<dim>& grid) {
   std::vector<Vec<double, dim>> moves_with(particles.size());
   for (std::size_t p = 0; p < particles.size(); ++p) {
     Vec<double, dim> pic = {}, flip = vector(particles, Field::velocity, p);
     Mat<double, dim> B = {}, grad_v = {};
-    for_each_node<Real, dim>(
-        particles, p, dx, settings.kernel, period,
-        [&](const Index<dim>& i, double w, const Vec<double, dim>& grad_w, const Vec<double, dim>& r) {
-          const ReferenceNode<dim>& node = grid.at(i);
-          pic += w * node.velocity;
-          flip += w * node.velocity_change;
-          B = B + w * outer(node.velocity, r);
-          grad_v = grad_v + outer(node.velocity, grad_w);
-        });
+    for_each_node<Real, dim>(particles, p, dx, settings.kernel, period, behind,
+                             [&](const NodeKey<dim>& i, double w, const Vec<double, dim>& grad_w,
+                                 const Vec<double, dim>& r, const Vec<double, dim>&) {
+                               const ReferenceNode<dim>& node = grid.at(i);
+                               pic += w * node.velocity;
+                               flip += w * node.velocity_change;
+                               B = B + w * outer(node.velocity, r);
+                               grad_v = grad_v + outer(node.velocity, grad_w);
+                             });
     const Vec<double, dim> v = (1 - settings.flip) * pic + settings.flip * flip;
     for (int i = 0; i < dim; ++i) particles.real(Field::velocity, i)[p] = static_cast<Real>(v[i]);
     set_matrix(particles, Field::affine, p,
@@ -132,9 +142,10 @@ std::vector<Vec<double, dim>> reference_gather(Particles<Real, dim>& particles, 
 
 #define FIRN_INSTANTIATE(Real, dim)                                                                                \
   template void reference_scatter<Real, dim>(const Particles<Real, dim>&, double, double, const TransferSettings&, \
-                                             const Period<dim>&, ReferenceGrid<dim>&);                             \
+                                             const Period<dim>&, const HiddenBehind<dim>&, ReferenceGrid<dim>&);   \
   template std::vector<Vec<double, dim>> reference_gather<Real, dim>(                                              \
-      Particles<Real, dim>&, double, const TransferSettings&, const Period<dim>&, const ReferenceGrid<dim>&);
+      Particles<Real, dim>&, double, const TransferSettings&, const Period<dim>&, const HiddenBehind<dim>&,        \
+      const ReferenceGrid<dim>&);
 FIRN_INSTANTIATE(float, 2)
 FIRN_INSTANTIATE(float, 3)
 FIRN_INSTANTIATE(double, 2)

@@ -174,6 +174,8 @@ const SolidDrawer::Uploaded& SolidDrawer::upload(const std::shared_ptr<const Sha
 }
 
 void SolidDrawer::draw_solids(const View& view, const Vec3d& origin, bool glass) const {
+  // A solid that changes its form has a new surface in each frame; those that nobody else holds will not come again.
+  std::erase_if(uploaded_, [](const auto& entry) { return entry.second.surface.use_count() == 1; });
   for (const DrawnSolid& solid : view.solids) {
     if (solid.glass != glass) continue;
     const Uploaded& uploaded = upload(solid.surface);
