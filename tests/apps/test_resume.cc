@@ -166,7 +166,7 @@ std::string sources_text() {
          "[[sink]]\nname = \"drain\"\nshape = \"box\"\nsize = [0.08, 0.1]\nposition = [0.05, 0.05]\n"
          "[[collider]]\nname = \"blade\"\nshape = \"box\"\nsize = [0.008, 0.2]\nposition = [0.14, 0.12]\n"
          "velocity = [-2, 0]\n"
-         "[[pin]]\nshape = \"disk\"\nradius = 0.04\nposition = [-0.05, 0.15]\nstart = 0.003\nstop = 0.02\n"
+         "[[pin]]\nshape = \"sphere\"\nradius = 0.04\nposition = [-0.05, 0.15]\nstart = 0.003\nstop = 0.02\n"
          "[[traction]]\nshape = \"box\"\nsize = [1, 0.1]\nposition = [0, 0.22]\npressure = \"2e4 * t\"\n"
          "[[probe]]\nname = \"row\"\nshape = \"line\"\nposition = [-0.2, 0.1]\nend = [0.2, 0.1]\ncount = 5\n"
          "[[probe]]\nname = \"place\"\nposition = [0, 0.1]\n";

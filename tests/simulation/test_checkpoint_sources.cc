@@ -50,7 +50,8 @@ std::string full_scene(int dimension, const char* precision, int threads, const 
       (flat ? std::string("[0.012, 0.3]") : std::string("[0.024, 0.3, 0.4]")) + "\nposition = " + at("-0.2", "0.1") +
       "\ninterpolation = \"smooth\"\nkeyframes = [{time = 0, position = " + at("-0.2", "0.1") +
       "}, {time = 0.15, position = " + at("-0.02", "0.12") + ", rotation = " + (flat ? "20" : "[0, 0, 20]") + "}]\n";
-  text += "[[pin]]\n" + ball + "0.05\nposition = " + at("0.4", "0.1") + "\nstart = 0.065\nstop = 0.12\n";
+  text +=
+      "[[pin]]\nshape = \"sphere\"\nradius = 0.05\nposition = " + at("0.4", "0.1") + "\nstart = 0.065\nstop = 0.12\n";
   text += "[[traction]]\nbody = \"cube\"\nshape = \"box\"\nsize = " + at("1", "0.1", "1") +
           "\nposition = " + at("0.4", "0.18") + "\npressure = \"500 * t\"\n";
   text += "[[probe]]\nname = \"row\"\nshape = \"line\"\nposition = " + at("-0.3", "0.1") +

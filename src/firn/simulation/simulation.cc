@@ -7,6 +7,7 @@
 #include <firn/measure/output_columns.h>
 #include <firn/scene/vary_parameters.h>
 #include <firn/simulation/checkpoint_state.h>
+#include <firn/simulation/frame_state.h>
 #include <firn/simulation/runaways.h>
 #include <firn/simulation/simulation.h>
 #include <firn/simulation/sources.h>
@@ -14,13 +15,10 @@
 #include <fmt/ranges.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
-#include <xxhash.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -128,7 +126,7 @@ class SimulationOf final : public Simulation {
     checkpoint.arithmetic = simd_target() == "baseline" ? "separate" : "fused";
     checkpoint.layout = layout_text(*world_);
     checkpoint.state = present_state();
-    if (paused_ && kept_) checkpoint.frame_start = kept_state();
+    if (paused_ && kept_) checkpoint.frame_start = saved(*kept_, {kept_->particles.begin(), kept_->particles.end()});
     return checkpoint;
   }
 
@@ -138,22 +136,25 @@ class SimulationOf final : public Simulation {
                   fmt::format("the checkpoint cannot be used: it is {}, and the scene {}", checkpoint.layout, layout));
     }
     // Everything that can be refused comes before the first change.
-    Restored present = read_state(checkpoint.state);
-    std::optional<Kept> frame_start;
-    if (checkpoint.frame_start) frame_start = read_state(*checkpoint.frame_start).kept;
+    Restored restored = read_state(checkpoint.state);
+    std::optional<FrameState<Real, dim>> frame_start;
+    if (checkpoint.frame_start) frame_start = read_state(*checkpoint.frame_start).state;
     std::optional<Paused> paused;
     if (checkpoint.state.texts.contains("next.limit")) paused = read_paused(checkpoint.state);
-    const std::string found = fmt::format("{:016x}", hash_of(present.kept.particles, present.kept, present.frame));
+    const auto& state = restored.state;
+    const std::string found = fmt::format(
+        "{:016x}",
+        hash_of<Real, dim>({state.particles.begin(), state.particles.end()}, state.t, state.steps, restored.frame));
     if (const std::string& expected = text_of(checkpoint.state, "hash"); found != expected) {
       throw Error(ErrorKind::files, fmt::format("the checkpoint cannot be used: it does not lead to the state that was "
                                                 "saved (its hash is {}, and was {})",
                                                 found, expected));
     }
 
-    kept_ = std::move(present.kept);
+    kept_ = std::move(restored.state);
     take_back();
-    frame_ = present.frame;
-    halvings_ = present.halvings;
+    frame_ = restored.frame;
+    halvings_ = restored.halvings;
     set_limits();
     report_ = kept_->report;
     kept_ = std::move(frame_start);
@@ -216,26 +217,9 @@ class SimulationOf final : public Simulation {
     return values;
   }
 
-  std::uint64_t hash() const override {
-    std::vector<std::reference_wrapper<const Particles<Real, dim>>> particles;
-    for (const auto& material : world_->materials) particles.push_back(material.particles);
-    return hash_of(particles, {.t = world_->t, .steps = world_->steps}, frame_);
-  }
+  std::uint64_t hash() const override { return hash_of(particles_of(*world_), world_->t, world_->steps, frame_); }
 
  private:
-  /// What a frame can be taken back to.
-  struct Kept {
-    std::vector<Particles<Real, dim>> particles = {};
-    std::vector<MaterialSpeeds> speeds = {};
-    double t = 0, max_speed = 0, max_collider_speed = 0;
-    std::uint64_t steps = 0;
-    std::int64_t parked = 0;
-    typename Sources<Real, dim>::Counts counts = {};
-    double loads_since = 0;  ///< s
-    std::vector<ColliderLoad> loads = {};
-    FrameReport report = {};
-  };
-
   /// Where a frame has paused.
   struct Paused {
     TimeStep next;
@@ -243,93 +227,35 @@ class SimulationOf final : public Simulation {
   };
 
   struct Restored {
-    Kept kept;
+    FrameState<Real, dim> state;
     std::int64_t frame;
     int halvings;
   };
 
+  FrameState<Real, dim> present() const {
+    FrameState<Real, dim> state = state_without_particles(*world_);
+    state.parked = guard_.parked();
+    state.counts = sources_->counts();
+    state.loads_since = loads_since_;
+    state.report = report_;
+    return state;
+  }
+
   void keep() {
     if (scene_.rollback == Scene::Rollback::off) return;
-    kept_.emplace();
-    for (const auto& material : world_->materials) {
-      kept_->particles.push_back(material.particles);
-      kept_->speeds.push_back(speeds_of(material));
-    }
-    kept_->t = world_->t;
-    kept_->max_speed = world_->max_speed;
-    kept_->max_collider_speed = world_->max_collider_speed;
-    kept_->steps = world_->steps;
-    kept_->parked = guard_.parked();
-    kept_->counts = sources_->counts();
-    kept_->loads_since = loads_since_;
-    kept_->loads = world_->collider_loads;
-    kept_->report = report_;
+    kept_ = present();
+    for (const auto& material : world_->materials) kept_->particles.push_back(material.particles);
   }
 
-  template <class List>
-  static std::uint64_t hash_of(const List& particles, const Kept& at, std::int64_t frame) {
-    const std::uint64_t clock[2] = {at.steps, static_cast<std::uint64_t>(frame)};
-    std::uint64_t hash = XXH64(clock, sizeof(clock), XXH64(&at.t, sizeof(at.t), 1));
-    for (const Particles<Real, dim>& each : particles) {
-      const std::uint64_t part = each.hash();
-      hash = XXH64(&part, sizeof(part), hash);
-    }
-    return hash;
-  }
-
-  static MaterialSpeeds speeds_of(const MaterialSet<Real, dim>& material) {
-    return {material.max_speed, material.wave_speed, material.kinematic_viscosity};
-  }
-
-  /// What both the present state and the one at the frame's start consist of, but for the materials.
-  CheckpointState clock_state(const Kept& at) const {
-    CheckpointState state;
-    state.numbers["time"] = at.t;
-    state.numbers["max_speed"] = at.max_speed;
-    state.numbers["max_collider_speed"] = at.max_collider_speed;
-    state.numbers["travelled"] = at.counts.travelled;
-    state.numbers["loads_since"] = at.loads_since;
-    state.counters["steps"] = static_cast<std::int64_t>(at.steps);
-    state.counters["parked"] = at.parked;
-    state.counters["frame"] = frame_;
-    state.counters["halvings"] = halvings_;
-    save_report(at.report, scene_, state);
-    save_loads(at.loads, scene_, state);
-    save_counts(at.counts.emitted, scene_.emitters, "emitter", state);
-    save_counts(at.counts.removed, scene_.sinks, "sink", state);
-    for (std::size_t e = 0; e < scene_.emitters.size(); ++e) {
-      state.counters[last_slot_name(e)] = at.counts.last_slot[e];
-    }
-    return state;
-  }
-
-  std::string last_slot_name(std::size_t emitter) const {
-    return fmt::format("emitter.{}.last_slot", scene_.emitters[emitter].name);
-  }
-
-  CheckpointState kept_state() const {
-    CheckpointState state = clock_state(*kept_);
-    for (std::size_t m = 0; m < world_->materials.size(); ++m) {
-      state.materials.push_back(save_material(world_->materials[m], kept_->particles[m], kept_->speeds[m]));
-    }
-    return state;
+  CheckpointState saved(const FrameState<Real, dim>& state, const ParticleList<Real, dim>& particles) const {
+    CheckpointState saved = save_state(state, particles, scene_, *world_);
+    saved.counters["frame"] = frame_;
+    saved.counters["halvings"] = halvings_;
+    return saved;
   }
 
   CheckpointState present_state() const {
-    Kept now = {};
-    now.t = world_->t;
-    now.max_speed = world_->max_speed;
-    now.max_collider_speed = world_->max_collider_speed;
-    now.steps = world_->steps;
-    now.parked = guard_.parked();
-    now.counts = sources_->counts();
-    now.loads_since = loads_since_;
-    now.loads = world_->collider_loads;
-    now.report = report_;
-    CheckpointState state = clock_state(now);
-    for (const auto& material : world_->materials) {
-      state.materials.push_back(save_material(material, material.particles, speeds_of(material)));
-    }
+    CheckpointState state = saved(present(), particles_of(*world_));
     state.texts["hash"] = fmt::format("{:016x}", hash());
     if (paused_) {
       state.numbers["next.dt"] = paused_->next.dt;
@@ -340,42 +266,13 @@ class SimulationOf final : public Simulation {
     return state;
   }
 
-  Restored read_state(const CheckpointState& state) {
-    if (state.materials.size() != world_->materials.size()) {
-      throw Error(ErrorKind::files, fmt::format("the checkpoint cannot be used: it has {} materials, and the scene {}",
-                                                state.materials.size(), world_->materials.size()));
-    }
-    Restored restored = {};
-    Kept& kept = restored.kept;
-    kept.t = number_of(state, "time");
-    kept.max_speed = number_of(state, "max_speed");
-    kept.max_collider_speed = number_of(state, "max_collider_speed");
-    kept.steps = static_cast<std::uint64_t>(counter_of(state, "steps"));
-    kept.parked = counter_of(state, "parked");
-    kept.counts.emitted = load_counts(state, scene_.emitters, "emitter");
-    kept.counts.removed = load_counts(state, scene_.sinks, "sink");
-    for (std::size_t e = 0; e < scene_.emitters.size(); ++e) {
-      kept.counts.last_slot.push_back(counter_of(state, last_slot_name(e)));
-    }
-    kept.counts.travelled = number_of(state, "travelled");
-    kept.loads_since = number_of(state, "loads_since");
-    kept.loads = load_loads(state, scene_);
-    kept.report = load_report(state, scene_);
-    kept.report.emitted = kept.counts.emitted;
-    kept.report.removed = kept.counts.removed;
-    restored.frame = counter_of(state, "frame");
-    restored.halvings = static_cast<int>(counter_of(state, "halvings"));
-    for (std::size_t m = 0; m < state.materials.size(); ++m) {
-      kept.speeds.push_back(load_speeds(state.materials[m]));
-      arena_.execute([&] {
-        kept.particles.push_back(load_particles(state.materials[m], world_->materials[m], world_->transfer.flip > 0,
-                                                scene_.bodies.size() + scene_.emitters.size()));
-      });
-    }
+  Restored read_state(const CheckpointState& saved) const {
+    Restored restored = {{}, counter_of(saved, "frame"), static_cast<int>(counter_of(saved, "halvings"))};
+    arena_.execute([&] { restored.state = load_state<Real, dim>(saved, scene_, *world_); });
     return restored;
   }
 
-  Paused read_paused(const CheckpointState& state) {
+  Paused read_paused(const CheckpointState& state) const {
     Paused paused;
     paused.next.dt = number_of(state, "next.dt");
     paused.next.limit = text_of(state, "next.limit");
@@ -388,24 +285,10 @@ class SimulationOf final : public Simulation {
   }
 
   void take_back() {
-    for (std::size_t m = 0; m < world_->materials.size(); ++m) {
-      auto& material = world_->materials[m];
-      material.particles = kept_->particles[m];
-      material.max_speed = kept_->speeds[m][0];
-      material.wave_speed = kept_->speeds[m][1];
-      material.kinematic_viscosity = kept_->speeds[m][2];
-    }
-    world_->t = kept_->t;
-    world_->max_speed = kept_->max_speed;
-    world_->max_collider_speed = kept_->max_collider_speed;
-    world_->scattered_dt.reset();
-    world_->drained = true;
-    arena_.execute([&] { activate_blocks(*world_); });
-    world_->steps = kept_->steps;
+    arena_.execute([&] { put_back(*kept_, *world_); });
     guard_.restore(kept_->parked);
     sources_->restore(kept_->counts);
     loads_since_ = kept_->loads_since;
-    world_->collider_loads = kept_->loads;
   }
 
   void retry(const ParticleFailure& failure) {
@@ -556,7 +439,7 @@ class SimulationOf final : public Simulation {
   RunawayGuard<Real, dim> guard_;
   std::vector<std::string> material_names_;
   int halvings_ = 0;  ///< of the limits, since frames were taken back
-  std::optional<Kept> kept_;
+  std::optional<FrameState<Real, dim>> kept_;
   std::optional<Paused> paused_;
   std::string limit_name_;  ///< of a restored next step, which refers to it
   FrameReport report_;
