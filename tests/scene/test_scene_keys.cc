@@ -56,7 +56,7 @@ TEST(SceneKeys, ProbesDecideNothingAndSinksDo) {
   const std::string probe = "[[probe]]\nname = \"place\"\nposition = [0, 1, 0]\n";
   EXPECT_EQ(differing_keys(keys_of(kText), keys_of(kText + probe)), Lines{});
   const std::string sink = "[[sink]]\nname = \"drain\"\nshape = \"box\"\nsize = [1, 1, 1]\n";
-  EXPECT_EQ(differing_keys(keys_of(kText), keys_of(kText + sink)).front(), "sink is drain and was not set");
+  EXPECT_EQ(differing_keys(keys_of(kText), keys_of(kText + sink)).front(), "sink is drain and was none");
 }
 
 TEST(SceneKeys, ASequenceIsAllOfItsFiles) {

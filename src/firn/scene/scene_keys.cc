@@ -73,7 +73,7 @@ std::map<std::string, std::string> scene_keys(const Scene& scene) {
       }
       add_keys(scene, section, i, prefix, keys);
     }
-    if (many) keys[std::string(section.name)] = fmt::format("{}", fmt::join(names, ", "));
+    if (many) keys[std::string(section.name)] = names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
   }
   return keys;
 }
