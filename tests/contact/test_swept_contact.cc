@@ -81,7 +81,8 @@ TEST(OneParticle, GoesFreeWhereTheWayIsFree) {
     EXPECT_EQ(particle.u[0], u[0]);
     EXPECT_EQ(particle.u[1], u[1]);
   }
-  // A hair's breadth above the floor too, along it and away from it.
+  // A hair's breadth above the floor too, along it and away from it, unless that sticks.
+  step.world.colliders = {floor_with(Contact::separate, 0.5)};
   for (const Vec2d& u : {Vec2d{{0.4, 0}}, Vec2d{{-1, 0.3}}}) {
     for (const double height : {0.0, 0.1 * kAbove, kAbove}) {
       const MovingParticle<2> particle = step.from({{0.02, height}}, u);
@@ -89,6 +90,19 @@ TEST(OneParticle, GoesFreeWhereTheWayIsFree) {
       EXPECT_EQ(particle.u[1], u[1]);
     }
   }
+}
+
+TEST(OneParticle, SticksWhereAStickyFloorHasStoppedIt) {
+  OneStep step;
+  step.world.colliders = {floor_with(Contact::sticky)};
+  const Vec2d x = {{0, 0.1}};
+  const Vec2d stopped = x + step.from(x, {{0.4, -0.3}}).u;
+  const MovingParticle<2> pulled = step.from(stopped, {{0.1, 0.5}});
+  expect_at(pulled.u, {{0, 0}}, kTiny);
+  expect_at(pulled.v, {{0, 0}}, kTiny);
+  // What has never touched it is free to leave.
+  const MovingParticle<2> near = step.from({{0, 4 * kAbove}}, {{0.1, 0.5}});
+  expect_at(near.u, {{0.1, 0.5}}, kTiny);
 }
 
 TEST(OneParticle, IsCarriedByAWallThatRunsIntoIt) {

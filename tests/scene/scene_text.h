@@ -22,6 +22,11 @@ inline const std::string kMinimal =
     "radius = 0.5\n"                // 7
     "material = \"snow\"\n";        // 8
 
+/// A scene with kMinimal in the plane: one more line, and a body that has a place there.
+inline std::string of_2d(std::string text) {
+  return "dimension = 2\n" + text.replace(text.find("sphere"), std::string("sphere").size(), "disk");
+}
+
 /// kMinimal with other text in front, at its root.
 inline std::string with_root(const std::string& text) { return text + "\n" + kMinimal; }
 

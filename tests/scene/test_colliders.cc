@@ -179,11 +179,6 @@ TEST_P(ColliderError, SaysWhereWhatAndWhatToDo) { EXPECT_TRUE(matches(error_of(G
 
 std::string with_collider(const std::string& text) { return kMinimal + "[[collider]]\n" + text; }  // from line 10
 
-/// The same scene in the plane: one more line, and a body that has a place there.
-std::string of_2d(std::string text) {
-  return "dimension = 2\n" + text.replace(text.find("sphere"), std::string("sphere").size(), "disk");
-}
-
 const std::string kBall = "shape = \"sphere\"\nradius = 1\n";
 
 INSTANTIATE_TEST_SUITE_P(

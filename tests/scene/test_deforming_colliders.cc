@@ -143,7 +143,7 @@ TEST_F(DeformingColliders, SayWhatIsWrong) {
 TEST_F(DeformingColliders, AreNoPartsAndNeedThreeDimensions) {
   EXPECT_TRUE(matches(error_of(kMinimal + "[[part]]\nname = \"a\"\nshape = \"mesh_sequence\""),
                       R"(scene.toml:11:9: part "a": a sequence cannot be a part of other shapes; .*)"));
-  EXPECT_TRUE(matches(error_of("dimension = 2\n" + kMinimal + "[[collider]]\n" + kBelt + "fps = 1"),
+  EXPECT_TRUE(matches(error_of(of_2d(kMinimal + "[[collider]]\n" + kBelt + "fps = 1")),
                       R"(scene.toml:11:9: collider .*: this shape needs a 3D scene; .*)"));
 }
 

@@ -100,7 +100,7 @@ TEST(MovingPin, TakesMaterialAlongItsCollidersWay) {
                           "interpolation = \"smooth\"\nkeyframes = [{ time = 0, position = [0.5, 0.5], rotation = 0 }, "
                           "{ time = 0.2, position = [0.7, 0.6], rotation = 90 }]\n"
                           "[[pin]]\nshape = \"box\"\nsize = [1, 1]\nposition = [0, 0.1]\nmoves_with = \"gripper\"\n",
-                 0.2, kStill));
+                 0.25, kStill));
   const Snapshot before = simulation->snapshot();
   run(*simulation);
   const Snapshot after = simulation->snapshot();

@@ -10,7 +10,8 @@
 namespace firn {
 namespace {
 
-Vec2d in_profile(const Vec3d& x) { return {{std::hypot(x[0], x[2]), x[1]}}; }
+/// Not std::hypot, which was a seventh of the time of a rotating drum: squares of positions do not overflow.
+Vec2d in_profile(const Vec3d& x) { return {{std::sqrt(x[0] * x[0] + x[2] * x[2]), x[1]}}; }
 
 }  // namespace
 

@@ -26,7 +26,7 @@ bool ParticleContact<Real, dim>::apply(MovingParticle<dim>& particle, std::vecto
   bool inside = false, near = false;
   for (const Near* collider : colliders_) {
     const double distance = collider->before.shape().distance(collider->before.to_frame(particle.x));
-    inside = inside || distance < 0;
+    inside = inside || collider->before.pose().scale * distance < touch(collider->before);
     if (collider->after.collider().is_filled) continue;
     near = near || in_reach(distance, collider->moves() ? collider->after.to_frame(target) - collider->start(particle.x)
                                                         : dt_ * particle.u);
@@ -52,7 +52,7 @@ template <class Real, int dim>
 bool ParticleContact<Real, dim>::hold_inside(MovingParticle<dim>& particle, std::vector<ColliderLoad>& loads) const {
   bool changed = false;
   for (const Near* near : colliders_) {
-    if (!(near->before.distance(particle.x) < 0)) continue;
+    if (!(near->before.distance(particle.x) < touch(near->before))) continue;
     const Vec<double, dim> n = near->before.normal(particle.x);
     make_admissible(near->before, near->place, particle.x, n, particle, loads);
     particle.u = near->before.admissible(particle.x, n, particle.u);

@@ -21,7 +21,7 @@ struct MovingParticle {
 
 /// What colliders do to particles in one step.
 ///
-/// 1. A particle inside a collider gets admissible v and u; with `push_out` it is also moved towards the surface.
+/// 1. A particle inside a collider, or touching a sticky one, gets admissible v and u; with `push_out` it is also moved towards the surface.
 /// 2. All others are stopped where their way meets a collider. In the frame of a collider the way is the straight one
 ///    from the inverse of the frame at t of x to the inverse of the frame at t + dt of x + dt u, so that material that
 ///    runs into a wall and a wall that runs into material are the same. From the first place where the way enters, what
@@ -50,6 +50,11 @@ class ParticleContact {
   template <class Number>
   static constexpr double kMargin = sizeof(Number) == 4 ? 4e-6 : 1e-8;
 
+  /// How near a particle, m, counts as inside. One that a sticky collider has stopped lies a margin outside, and what
+  /// touches it must not get away.
+  double touch(const PosedCollider<dim>& collider) const {
+    return collider.collider().contact == Contact::sticky ? 2 * margin_ : 0;
+  }
   bool hold_inside(MovingParticle<dim>& particle, std::vector<ColliderLoad>& loads) const;
   bool sweep(MovingParticle<dim>& particle, std::vector<ColliderLoad>& loads) const;
   void make_admissible(const PosedCollider<dim>& collider, std::size_t place, const Vec<double, dim>& x,
