@@ -30,6 +30,9 @@ class GrowingBall final : public DeformingShape<3> {
       return 2 * (t_ + ahead) * ball_.normal(x) + cross(Vec3d{{0, 3, 0}}, ball_.normal(x));
     }
 
+    Vec3d displacement(const Vec3d& x, double duration) const override {
+      return duration * ((2 * t_ + duration) * ball_.normal(x) + cross(Vec3d{{0, 3, 0}}, ball_.normal(x)));
+    }
     double fastest() const override { return 2 * t_; }
 
    private:

@@ -58,6 +58,8 @@ double passed_on(const Case& c, bool kept_apart = true, double towards = 0) {
   return most;
 }
 
+// Not the linear kernel: it tears loaded free surfaces (docs/performance.md), and jelly that is hit like this turns
+// inside out within some hundredths of a second, with the two sides kept apart or not. test_bits.cc has its steps.
 const Case kCases[] = {
     {.name = "surfaces on nodes", .shift = 0.5},
     {.name = "centre on nodes"},
@@ -72,7 +74,6 @@ const Case kCases[] = {
     {.name = "sticky", .degrees = 30, .contact = Contact::sticky},
     {.name = "slip", .degrees = 30, .contact = Contact::slip},
     {.name = "friction", .degrees = 30, .friction = 0.5},
-    {.name = "linear kernel", .kernel = Kernel::linear, .form = Form::gradient, .affine = 0, .degrees = 30},
     {.name = "cubic kernel", .kernel = Kernel::cubic, .degrees = 30},
     {.name = "gradient form", .form = Form::gradient, .degrees = 30},
     {.name = "FLIP", .affine = 0, .flip = 1, .degrees = 30},
@@ -83,8 +84,9 @@ TEST(ThinPlate, DoesNotPassOnABlow) {
   double worst = 0;
   for (const Case& c : kCases) {
     for (const double towards : {0.0, 60.0}) {
+      SCOPED_TRACE(fmt::format("{}, {} degrees", c.name, towards));
       const double share = passed_on<double, 2>(c, true, towards);
-      EXPECT_LT(share, 0.01) << c.name << ", " << towards << " degrees";
+      EXPECT_LT(share, 0.01);
       worst = std::max(worst, share);
     }
     RecordProperty(fmt::format("without_{}", c.name), fmt::format("{:.3f}", passed_on<double, 2>(c, false)));

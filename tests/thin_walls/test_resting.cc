@@ -57,6 +57,8 @@ TEST(OnAThinPlate, ABlockSlidesAsOnAThickOne) {
     double friction;
     TransferSettings settings = {};
   };
+  // Not the linear kernel, which tears loaded free surfaces: the block turns inside out on the way, in the same step on
+  // the half space as on the plate.
   const Case cases[] = {
       {"flat", 1, 0, Contact::separate, 0.3},
       {"slope", 1, -30, Contact::separate, 0.3},
@@ -65,13 +67,13 @@ TEST(OnAThinPlate, ABlockSlidesAsOnAThickOne) {
       {"sticky", 1, -30, Contact::sticky, 0},
       {"FLIP", 1, -30, Contact::separate, 0.3, {Kernel::quadratic, Form::mls, 0, 0.95}},
       {"cubic", 1, -30, Contact::separate, 0.3, {Kernel::cubic, Form::gradient, 1, 0}},
-      {"linear", 1, -30, Contact::separate, 0.3, {Kernel::linear, Form::gradient, 0, 0}},
   };
   for (const Case& c : cases) {
+    SCOPED_TRACE(c.name);
     const auto thick = slide(Ground::thick, 0, c.degrees, c.contact, c.friction, c.settings);
     const auto thin = slide(Ground::thin, c.thickness * kDx, c.degrees, c.contact, c.friction, c.settings);
     // Only rounding differs, and what it comes to in 0.3 s.
-    EXPECT_LT(largest_difference(thin, thick), 1e-6 * kDx) << c.name;
+    EXPECT_LT(largest_difference(thin, thick), 1e-6 * kDx);
     RecordProperty(c.name, fmt::format("{:.1e} cells", largest_difference(thin, thick) / kDx));
   }
 }

@@ -80,9 +80,9 @@ class PosedCollider {
   const Collider<dim>& collider() const { return *collider_; }
   /// The form at this instant, in the frame.
   const Shape<dim>& shape() const { return *shape_; }
-  /// Velocity of the change of form next to y, in the frame; 0 for a rigid collider.
-  Vec<double, dim> velocity_of_form(const Vec<double, dim>& y) const {
-    return form_ ? form_->velocity(y) : Vec<double, dim>{};
+  /// How the change of form moves the surface next to y within `duration`, s, in the frame; 0 for a rigid collider.
+  Vec<double, dim> displacement_of_form(const Vec<double, dim>& y, double duration) const {
+    return form_ ? form_->displacement(y, duration) : Vec<double, dim>{};
   }
   const Pose<dim>& pose() const { return pose_; }
 

@@ -60,35 +60,65 @@ class LevelSetInstant final : public ShapeInMotion<3> {
   }
 
   Vec3d velocity(const Vec3d& x, double ahead) const override {
-    Vec3d p = x;
-    Vec3d g = gradient(p);
-    // To the surface: what is asked for is inside it or next to it.
-    for (int i = 0; i < 3; ++i) {
-      const double size = dot(g, g);
-      if (!(size > kFlat)) break;
-      p = p - (phi(p) / size) * g;
-      g = gradient(p);
-    }
+    const SurfacePoint at = surface_point(x);
+    const SequenceClock::Sum then = whole_.clock_.at(t_ + ahead);
     double rate = 0;
-    Vec3d along = {};
-    for (const SequenceClock::Term& term : whole_.clock_.at(t_ + ahead)) {
-      const LevelSetFrame& frame = whole_.frames_[term.entry];
-      rate += term.rate * frame.distance->distance(p);
-      if (frame.velocity) along += term.weight * frame.velocity->at(p);
-    }
-    const double size = norm(g);
-    if (!(size * size > kFlat)) return along;
-    const Vec3d n = (1 / size) * g;
-    return along - (dot(along, n) + rate / size) * n;
+    for (const SequenceClock::Term& term : then) rate += term.rate * distance_in(term, at.p);
+    return motion(at.gradient, rate, along(then, at.p));
+  }
+
+  Vec3d displacement(const Vec3d& x, double duration) const override {
+    const SurfacePoint at = surface_point(x);
+    const SequenceClock::Sum then = whole_.clock_.at(t_ + duration);
+    double change = -phi(at.p);
+    for (const SequenceClock::Term& term : then) change += term.weight * distance_in(term, at.p);
+    return motion(at.gradient, change, 0.5 * duration * (along(sum_, at.p) + along(then, at.p)));
   }
 
  private:
   /// Squared length of a gradient below which it has no direction: between two surfaces that face each other.
   static constexpr double kFlat = 1e-4;
 
+  struct SurfacePoint {
+    Vec3d p, gradient;
+  };
+
+  /// The surface next to x: what is asked for is inside it or beside it.
+  SurfacePoint surface_point(const Vec3d& x) const {
+    SurfacePoint at = {x, gradient(x)};
+    for (int i = 0; i < 3; ++i) {
+      const double size = dot(at.gradient, at.gradient);
+      if (!(size > kFlat)) break;
+      at.p = at.p - (phi(at.p) / size) * at.gradient;
+      at.gradient = gradient(at.p);
+    }
+    return at;
+  }
+
+  double distance_in(const SequenceClock::Term& term, const Vec3d& x) const {
+    return whole_.frames_[term.entry].distance->distance(x);
+  }
+
+  /// What the velocity grids say.
+  Vec3d along(const SequenceClock::Sum& sum, const Vec3d& x) const {
+    Vec3d v = {};
+    for (const SequenceClock::Term& term : sum) {
+      if (const auto& grid = whole_.frames_[term.entry].velocity) v += term.weight * grid->at(x);
+    }
+    return v;
+  }
+
+  /// Across the surface what the change of phi says, along it `along`.
+  static Vec3d motion(const Vec3d& gradient, double change, const Vec3d& along) {
+    const double size = norm(gradient);
+    if (!(size * size > kFlat)) return along;
+    const Vec3d n = (1 / size) * gradient;
+    return along - (dot(along, n) + change / size) * n;
+  }
+
   double phi(const Vec3d& x) const {
     double d = 0;
-    for (const SequenceClock::Term& term : sum_) d += term.weight * whole_.frames_[term.entry].distance->distance(x);
+    for (const SequenceClock::Term& term : sum_) d += term.weight * distance_in(term, x);
     return d;
   }
 

@@ -17,8 +17,8 @@ struct LevelSetFrame {
 };
 
 /// The solid inside level sets that are interpolated linearly in time at fixed places: phi = sum w_k phi_k. That is a
-/// distance next to the surface as long as one entry's surface lies in the narrow band of the next, and a bound
-/// elsewhere.
+/// distance next to the surface as long as one entry's surface, with the nodes on both sides of it, lies in the
+/// narrow band of the next, and a bound elsewhere.
 ///
 /// A level set knows its motion only across the surface: n v = -(d phi / d t) / |grad phi|. Along the surface the
 /// velocity is that of the entries' velocity grids, and zero without them.

@@ -97,6 +97,20 @@ class MeshInstant final : public ShapeInMotion<3> {
     return v;
   }
 
+  Vec3d displacement(const Vec3d& x, double duration) const override {
+    const Nearest near = nearest(x);
+    const SequenceClock::Sum later = whole_.sequence_.clock.at(t_ + duration);
+    Vec3d moved = {};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto vertex = static_cast<std::size_t>(mesh_.triangles[near.triangle][i]);
+      Vec3d there = {};
+      for (const SequenceClock::Term& term : later)
+        there += term.weight * whole_.sequence_.positions[term.entry][vertex];
+      moved += near.weights[static_cast<int>(i)] * (there - mesh_.vertices[vertex]);
+    }
+    return moved;
+  }
+
  private:
   /// Of the vertices, and so of all that lies between them.
   double largest_speed() const {

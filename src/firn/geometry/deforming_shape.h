@@ -15,6 +15,10 @@ class ShapeInMotion : public Shape<dim> {
   /// it will have that much later, s.
   virtual Vec<double, dim> velocity(const Vec<double, dim>& x, double ahead = 0) const = 0;
 
+  /// How far the material point of the surface that is nearest to x goes within `duration` from now, s, m: not the
+  /// velocity times that where the velocity changes in between.
+  virtual Vec<double, dim> displacement(const Vec<double, dim>& x, double duration) const = 0;
+
   /// No point of the surface moves faster than this across the surface, m/s: by how much distances may change.
   virtual double fastest() const = 0;
 };

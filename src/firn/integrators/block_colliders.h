@@ -26,15 +26,24 @@ struct StepCollider {
   }
 
   /// Where the way of a particle at x begins, in the frame. Where the form changes, a point goes along with the surface
-  /// next to it, so that a way that ends beyond the new surface has crossed it.
-  Vec<double, dim> start(const Vec<double, dim>& x) const {
+  /// next to it, by what that moves in the whole step, so that a way that ends beyond the new surface has crossed it.
+  ///
+  /// Another part of the surface may close on the point meanwhile. Then its way begins in front of that part, if that
+  /// is thicker than twice what it moves in the step; what is thinner and comes from aside may pass a point that
+  /// another part is nearer to.
+  ///
+  /// @param clearance in front of such a part, in the frame
+  Vec<double, dim> start(const Vec<double, dim>& x, double clearance) const {
     const Vec<double, dim> y = before.to_frame(x);
     if (!after.collider().deforming) return y;
-    const Vec<double, dim> moved = y + dt * before.velocity_of_form(y);
+    const Vec<double, dim> moved = y + before.displacement_of_form(y, dt);
     const double depth = -after.shape().distance(moved);
-    // What a curved way of the surface leaves inside.
-    return depth >= 0 && before.shape().distance(y) >= 0 ? moved + 1.001 * depth * after.shape().normal(moved) : moved;
+    if (!(depth >= 0) || before.shape().distance(y) < 0) return moved;
+    return moved + (depth + clearance) * after.shape().normal(moved);
   }
+
+  /// By how much the change of form moves the surface across itself in the step at most, m.
+  double deformation() const { return dt * std::max(before.deformation_speed(), after.deformation_speed()); }
 
   /// How far points of the world within `radius` of x move in the collider's frame during the step, m.
   double motion(const Vec<double, dim>& x, double radius) const {
@@ -46,8 +55,7 @@ struct StepCollider {
       square += turn.e[e] * turn.e[e];
     }
     const double scale = std::max(before.pose().scale, after.pose().scale);
-    return scale * (norm(after.to_frame(x) - before.to_frame(x)) + radius * std::sqrt(square)) +
-           dt * std::max(before.deformation_speed(), after.deformation_speed());
+    return scale * (norm(after.to_frame(x) - before.to_frame(x)) + radius * std::sqrt(square)) + deformation();
   }
 };
 

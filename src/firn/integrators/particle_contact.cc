@@ -11,9 +11,10 @@ constexpr int kTurns = 8, kStops = 4;
 constexpr double kSearchStep = 1.0 / 16, kPush = 0.1;
 
 /// Whether a way in the frame may meet the surface. Written so that a way that is not finite does not, and the particle
-/// is found by whoever looks for failed ones.
+/// is found by whoever looks for failed ones. @param closing how far the surface may come towards the way meanwhile
 template <int dim>
-bool in_reach(double distance, const Vec<double, dim>& way) {
+bool in_reach(double distance, const Vec<double, dim>& way, double closing = 0) {
+  if (closing > 0) return distance >= 0 && distance <= std::sqrt(static_cast<double>(dim)) * (norm(way) + closing);
   return distance >= 0 && distance * distance <= dim * dot(way, way);
 }
 
@@ -28,8 +29,10 @@ bool ParticleContact<Real, dim>::apply(MovingParticle<dim>& particle, std::vecto
     const double distance = collider->before.shape().distance(collider->before.to_frame(particle.x));
     inside = inside || collider->before.pose().scale * distance < touch(collider->before);
     if (collider->after.collider().is_filled) continue;
-    near = near || in_reach(distance, collider->moves() ? collider->after.to_frame(target) - collider->start(particle.x)
-                                                        : dt_ * particle.u);
+    near = near || in_reach(distance,
+                            collider->moves() ? collider->after.to_frame(target) - collider->before.to_frame(particle.x)
+                                              : dt_ * particle.u,
+                            collider->deformation() / collider->before.pose().scale);
   }
   const bool held = inside && hold_inside(particle, loads);
   const bool stopped = swept_ && (near || held) && sweep(particle, loads);
@@ -71,10 +74,10 @@ auto ParticleContact<Real, dim>::first_collision(const Vec<double, dim>& x, cons
   std::optional<Collision> first;
   for (const Near* near : colliders_) {
     if (near->after.collider().is_filled) continue;
-    const Vec<double, dim> from = near->start(x), to = near->after.to_frame(target);
+    const double per_unit = 1 / near->after.pose().scale;
+    const Vec<double, dim> from = near->start(x, margin_ * per_unit), to = near->after.to_frame(target);
     const Shape<dim>& shape = near->after.shape();
     if (!in_reach(shape.distance(from), to - from)) continue;
-    const double per_unit = 1 / near->after.pose().scale;
     const auto hit = first_hit(shape, from, to, {0.5 * margin_ * per_unit, kSearchStep * dx_ * per_unit});
     if (!hit || (first && first->fraction <= hit->fraction)) continue;
     first = {near, hit->fraction, hit->point, hit->normal, (1 - hit->fraction) * (to - from)};

@@ -164,7 +164,7 @@ Vec3d node_position(const Lattice& lattice, const Coord& node) {
   return lattice.origin + lattice.cell * Vec3d{{double(node.x()), double(node.y()), double(node.z())}};
 }
 
-/// A grid node beside the surface: inside, with a neighbour outside.
+/// visit(inside, outside) for all neighbouring grid nodes between which the surface is.
 template <class Visit>
 void visit_surface(const FloatGrid& grid, const Visit& visit) {
   const auto accessor = grid.getConstAccessor();
@@ -173,9 +173,7 @@ void visit_surface(const FloatGrid& grid, const Visit& visit) {
     const Coord node = value.getCoord();
     for (const Coord& step :
          {Coord(1, 0, 0), Coord(-1, 0, 0), Coord(0, 1, 0), Coord(0, -1, 0), Coord(0, 0, 1), Coord(0, 0, -1)}) {
-      if (accessor.getValue(node + step) < 0) continue;
-      visit(node);
-      break;
+      if (!(accessor.getValue(node + step) < 0)) visit(node, node + step);
     }
   }
 }
@@ -189,7 +187,7 @@ std::shared_ptr<const LevelSet> level_set_of(const fs::path& path, const FloatGr
   }
   LevelSet::Data data;
   Bounds<3> surface;
-  visit_surface(grid, [&](const Coord& node) { surface.include(node_position(lattice, node)); });
+  visit_surface(grid, [&](const Coord& node, const Coord&) { surface.include(node_position(lattice, node)); });
   if (!(surface.lower[0] <= surface.upper[0])) {
     fail(path, fmt::format("grid \"{}\" has no surface: no value below 0 next to one above", grid.getName()));
   }
@@ -257,15 +255,19 @@ std::shared_ptr<const VectorGrid> velocity_of(const fs::path& path, const Vec3SG
   return std::make_shared<VectorGrid>(std::move(data));
 }
 
-void check_band(const FloatGrid& surface, const fs::path& file, const FloatGrid& band, const fs::path& band_file) {
+/// The nodes on both sides of one surface must be in the other's band: the surface moves with the difference of the two
+/// distances there, and beyond the band they are no distances.
+void check_band(const fs::path& file, const FloatGrid& surface, const fs::path& band_file, const FloatGrid& band) {
   const auto accessor = band.getConstAccessor();
-  visit_surface(surface, [&](const Coord& node) {
-    const Coord nearest = Coord::round(band.worldToIndex(surface.indexToWorld(node)));
-    if (accessor.isValueOn(nearest)) return;
-    const double width = std::abs(static_cast<double>(band.background()));
-    fail(file, fmt::format("its surface is further than the narrow band of {:.3g} m away from that of {}; export more "
-                           "frames or a wider band",
-                           width, band_file.string()));
+  const auto has = [&](const Coord& node) {
+    return accessor.isValueOn(Coord::round(band.worldToIndex(surface.indexToWorld(node))));
+  };
+  visit_surface(surface, [&](const Coord& inside, const Coord& outside) {
+    if (has(inside) && has(outside)) return;
+    const double width = std::abs(static_cast<double>(band.background())), cell = surface.voxelSize()[0];
+    fail(file, fmt::format("its surface is too far from that of {}: a narrow band of {:.3g} m and cells of {:.3g} m "
+                           "are good for {:.3g} m; export more frames or a wider band",
+                           band_file.string(), width, cell, width - cell));
   });
 }
 
@@ -279,8 +281,8 @@ std::vector<LevelSetFrame> read_level_sets(const std::vector<fs::path>& files, d
     frames.push_back({level_set_of(files[k], *grids.distance, scale),
                       grids.velocity ? velocity_of(files[k], *grids.velocity, scale) : nullptr});
     if (k > 0) {
-      check_band(*grids.distance, files[k], *last.distance, files[k - 1]);
-      check_band(*last.distance, files[k - 1], *grids.distance, files[k]);
+      check_band(files[k], *grids.distance, files[k - 1], *last.distance);
+      check_band(files[k - 1], *last.distance, files[k], *grids.distance);
     }
     last = std::move(grids);
   }

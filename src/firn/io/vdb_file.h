@@ -14,8 +14,8 @@ namespace firn {
 ///
 /// Throws Error (files) for a file that cannot be read; Error (usage), with the file, if it has no such grid or more
 /// than one, if cells are not cubes along the axes, if the narrow band is less than two cells wide, if there is no
-/// surface, and, with both files, if the surface of one leaves the narrow band of the one before: then nothing between
-/// them is known.
+/// surface, and, with both files, if the surface of one, with the nodes on both sides of it, leaves the narrow band
+/// of the next or the one before: then nothing between them is known.
 std::vector<LevelSetFrame> read_level_sets(const std::vector<std::filesystem::path>& files, double scale = 1);
 
 /// Of the library that is linked: "10.0.1".
