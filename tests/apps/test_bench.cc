@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/run_program.h"
+#include "support/temporary_folder.h"
 
 namespace firn::test {
 namespace {
@@ -38,12 +39,6 @@ BenchCase with(auto key, auto value, BenchCase bench = {}) {
 /// A folder for landed states and tables.
 class BenchTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::path(testing::TempDir()) / "firn bench XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   ProgramResult bench(const std::string& arguments) const {
     return run_firn("bench --steps 2 --threads 1 " + arguments, "XDG_CACHE_HOME='" + folder_.string() + "'");
   }
@@ -53,7 +48,8 @@ class BenchTest : public testing::Test {
     return files;
   }
 
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 TEST(BenchTargets, ScaleWithTheMeasuredRateAndHoldForTheMainCaseOnly) {

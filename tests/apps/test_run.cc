@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "apps/run_program.h"
+#include "support/temporary_folder.h"
 
 namespace firn::test {
 namespace {
@@ -15,12 +16,7 @@ namespace fs = std::filesystem;
 /// A folder with a scene: a small mesh cube of snow that falls on sticky ground, 5 frames.
 class RunScene : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::path(testing::TempDir()) / "firn run XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-    write("scene.toml", scene_text());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { write("scene.toml", scene_text()); }
 
   static std::string scene_text(const std::string& mesh = FIRN_SOURCE_DIR "/scenes/meshes/cube.obj") {
     return "end_time = 0.1\nframe_rate = 40\n"
@@ -48,7 +44,8 @@ class RunScene : public testing::Test {
     return text.str();
   }
 
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 /// Rows of a CSV file by column name.

@@ -3,7 +3,7 @@
 #include <firn/io/frame_writer.h>
 #include <gtest/gtest.h>
 #include <io/frame_samples.h>
-#include <io/temporary_folder.h>
+#include "support/temporary_folder.h"
 
 #include <cstdlib>
 

@@ -1,7 +1,7 @@
 #include <firn/core/error.h>
 #include <firn/io/frame_series.h>
 #include <gtest/gtest.h>
-#include <io/temporary_folder.h>
+#include "support/temporary_folder.h"
 
 namespace firn {
 namespace {

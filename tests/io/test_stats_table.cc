@@ -1,7 +1,7 @@
 #include <firn/core/error.h>
 #include <firn/io/stats_table.h>
 #include <gtest/gtest.h>
-#include <io/temporary_folder.h>
+#include "support/temporary_folder.h"
 
 #include <limits>
 

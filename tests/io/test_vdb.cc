@@ -2,6 +2,7 @@
 
 #include <firn/core/error.h>
 #include <firn/io/vdb_file.h>
+#include <gtest/gtest.h>
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
@@ -9,8 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/temporary_folder.h"
 #include "support/random.h"
+#include "support/temporary_folder.h"
 
 namespace firn {
 namespace {

@@ -1,6 +1,7 @@
 #include <firn/core/error.h>
 #include <firn/io/atomic_file.h>
-#include <mesh/temporary_folder.h>
+#include <gtest/gtest.h>
+#include "support/temporary_folder.h"
 
 namespace firn {
 namespace {
@@ -9,9 +10,9 @@ TEST(AtomicFile, WritesAndReplaces) {
   const TemporaryFolder folder;
   const auto path = folder / "ünï \"quoted\" 雪.bin";
   write_file_atomically(path, std::string("a\0b", 3));
-  EXPECT_EQ(read_bytes(path), std::string("a\0b", 3));
+  EXPECT_EQ(file_bytes(path), std::string("a\0b", 3));
   write_file_atomically(path, "second", Durability::synced);
-  EXPECT_EQ(read_bytes(path), "second");
+  EXPECT_EQ(file_bytes(path), "second");
   EXPECT_FALSE(std::filesystem::exists(path.string() + ".part"));
 }
 
@@ -23,7 +24,7 @@ TEST(AtomicFile, WithoutCommitTheOldFileStaysAndThePartFileGoes) {
     std::ofstream(file.part_path()) << "half";
     EXPECT_TRUE(std::filesystem::exists(file.part_path()));
   }
-  EXPECT_EQ(read_bytes(path), "old");
+  EXPECT_EQ(file_bytes(path), "old");
   EXPECT_FALSE(std::filesystem::exists(path.string() + ".part"));
 }
 
@@ -33,7 +34,7 @@ TEST(AtomicFile, FollowsASymbolicLinkAndRefusesALoop) {
   std::filesystem::create_symlink("real", folder / "link");
   write_file_atomically(folder / "link", "new");
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
-  EXPECT_EQ(read_bytes(folder / "real"), "new");
+  EXPECT_EQ(file_bytes(folder / "real"), "new");
 
   std::filesystem::create_symlink("loop", folder / "loop");
   EXPECT_NE(message_of([&] { write_file_atomically(folder / "loop", "x"); }), "");

@@ -2,7 +2,8 @@
 #include <firn/geometry/mesh_report.h>
 #include <firn/io/mesh_parsers.h>
 #include <firn/io/mesh_reader.h>
-#include <mesh/temporary_folder.h>
+#include <gtest/gtest.h>
+#include "support/temporary_folder.h"
 
 #include <clocale>
 #include <cmath>

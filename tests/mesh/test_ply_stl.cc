@@ -3,7 +3,8 @@
 #include <firn/io/mesh_points.h>
 #include <firn/io/mesh_reader.h>
 #include <geometry/mesh_builders.h>
-#include <mesh/temporary_folder.h>
+#include <gtest/gtest.h>
+#include "support/temporary_folder.h"
 
 #include <algorithm>
 #include <bit>
@@ -152,7 +153,7 @@ TEST(PointsWriter, WhatItWritesIsWhatPlySays) {
   const TemporaryFolder folder;
   const std::vector<Vec3d> points = {{{1, 2, 3}}, {{-0.5, 1e-3, 7}}};
   write_points_ply<3>(folder / "points.ply", points);
-  const std::string bytes = read_bytes(folder / "points.ply");
+  const std::string bytes = file_bytes(folder / "points.ply");
   const std::size_t body = bytes.find("end_header\n") + 11;
   EXPECT_NE(bytes.find("format binary_little_endian 1.0\nelement vertex 2\nproperty float x\n"), std::string::npos);
   ASSERT_EQ(bytes.size() - body, 24u);

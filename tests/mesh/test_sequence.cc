@@ -4,11 +4,12 @@
 #include <firn/core/log.h>
 #include <firn/io/file_sequence.h>
 #include <firn/io/mesh_sequence.h>
+#include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "geometry/mesh_builders.h"
-#include "mesh/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace firn {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <io/temporary_folder.h>
 #include <support/record.h>
+#include "support/temporary_folder.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,9 +1,9 @@
 #include <firn/core/error.h>
 #include <firn/render/scene_view.h>
 #include <gtest/gtest.h>
-#include <io/temporary_folder.h>
 #include <png.h>
 #include <render/picture_samples.h>
+#include "support/temporary_folder.h"
 
 namespace firn {
 namespace {

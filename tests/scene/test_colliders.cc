@@ -10,8 +10,8 @@
 #include <fstream>
 #include <numbers>
 
-#include "mesh/temporary_folder.h"
 #include "scene/scene_text.h"
+#include "support/temporary_folder.h"
 
 namespace firn::test {
 namespace {

@@ -7,9 +7,9 @@
 
 #include <fstream>
 
-#include "mesh/temporary_folder.h"
 #include "scene/scene_text.h"
 #include "support/belt.h"
+#include "support/temporary_folder.h"
 
 namespace firn::test {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-#include "mesh/temporary_folder.h"
 #include "support/belt.h"
+#include "support/temporary_folder.h"
 
 namespace firn {
 namespace {

@@ -4,8 +4,8 @@
 #include <firn/scene/load_scene.h>
 #include <gtest/gtest.h>
 
-#include "mesh/temporary_folder.h"
 #include "support/belt.h"
+#include "support/temporary_folder.h"
 
 namespace firn {
 namespace {

@@ -13,11 +13,10 @@ namespace {
 
 using Kind = ShapeSettings::Shape;
 
-/// A unit vector stays as it is, so that a resolved scene read back is the same scene.
 void normalize_key(const SceneDraft& draft, std::string_view section, std::size_t i, std::string_view key, Vec3d& v) {
   if (!draft.has(section, i, key)) v = up_direction(draft.scene);
   if (norm(v) == 0) draft.fail(section, i, key, fmt::format("{} must not be zero", key));
-  if (std::abs(norm(v) - 1) > 1e-15) v = normalized(v);
+  v = unit_key(v);
 }
 
 void check_dimension(const SceneDraft& draft, std::string_view section, std::size_t i, Kind shape) {

@@ -4,12 +4,16 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
 
 /// What complete_scene() does alike for several kinds of objects. All throw Error(usage), or Error(files), located.
 namespace firn {
+
+/// A unit vector stays as it is, so that a resolved scene read back is the same scene.
+inline Vec3d unit_key(const Vec3d& v) { return std::abs(norm(v) - 1) > 1e-15 ? normalized(v) : v; }
 
 /// Names the nameless "body0", "body1" and so on, and refuses equal names.
 template <class Settings>

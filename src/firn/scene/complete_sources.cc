@@ -97,8 +97,7 @@ void complete_vortex(SceneDraft& draft, std::size_t i) {
   if (flat && (field.axis[0] != 0 || field.axis[1] != 0)) {
     draft.fail("field", i, "axis", "axis of a 2D scene must be along z: leave it out");
   }
-  // A unit vector stays as it is, so that a resolved scene read back is the same scene.
-  if (std::abs(norm(field.axis) - 1) > 1e-15) field.axis = normalized(field.axis);
+  field.axis = unit_key(field.axis);
 }
 
 void complete_fields(SceneDraft& draft) {
@@ -143,7 +142,7 @@ void complete_normal(const SceneDraft& draft, std::size_t i, TractionSettings& t
   if (norm(traction.normal) == 0) {
     draft.fail("traction", i, "normal", "normal must not be zero; it is the direction of the face that stress acts on");
   }
-  if (std::abs(norm(traction.normal) - 1) > 1e-15) traction.normal = normalized(traction.normal);
+  traction.normal = unit_key(traction.normal);
 }
 
 void complete_tractions(SceneDraft& draft) {
