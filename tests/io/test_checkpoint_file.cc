@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "frame_samples.h"
-#include "temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace firn {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace firn {
 namespace {

@@ -5,7 +5,7 @@
 #include <firn/scene/load_scene.h>
 #include <firn/simulation/simulation.h>
 #include <gtest/gtest.h>
-#include <io/temporary_folder.h>
+#include "support/temporary_folder.h"
 
 #include <algorithm>
 #include <functional>

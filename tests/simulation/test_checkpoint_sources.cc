@@ -3,7 +3,7 @@
 #include <firn/io/checkpoint_file.h>
 #include <firn/scene/probe_points.h>
 #include <gtest/gtest.h>
-#include <io/temporary_folder.h>
+#include "support/temporary_folder.h"
 
 #include <algorithm>
 #include <functional>
