@@ -74,6 +74,39 @@ TEST(StatsTable, ErrorsNameTheFile) {
   }
 }
 
+TEST(StatsTable, ResumedKeepsRowsReplacesLaterOnesAndDropsATornLine) {
+  const TemporaryFolder folder;
+  const auto path = folder / "stats.csv";
+  const auto row = [](std::int64_t frame, double mass) {
+    StatsRow r;
+    r.frame = frame, r.mass = mass;
+    return r;
+  };
+  {
+    StatsTable table(path);
+    for (std::int64_t frame = 1; frame <= 4; ++frame) table.append(row(frame, 1));
+  }
+  const std::string whole = file_bytes(path);
+  std::ofstream(path, std::ios::app) << "5,0.2,";  // killed while it wrote
+  {
+    StatsTable table = StatsTable::resume(path, {}, 2, true);
+    EXPECT_EQ(file_bytes(path), whole) << "later rows stay";
+    table.append(row(3, 1));
+    EXPECT_EQ(file_bytes(path), whole) << "replaced by its like";
+    table.append(row(4, 1));
+    EXPECT_EQ(file_bytes(path), whole);
+    table.append(row(5, 1));
+    EXPECT_TRUE(file_bytes(path).starts_with(whole));
+    EXPECT_EQ(file_bytes(path).find("5,0.2"), std::string::npos);
+    table.sync();
+  }
+  StatsTable::resume(path, {}, 4, false);
+  EXPECT_EQ(file_bytes(path), whole) << "later rows of another scene go";
+  std::filesystem::remove(path);
+  StatsTable::resume(path, {}, 2, true).append(row(3, 1));
+  EXPECT_NE(file_bytes(path).find("\n3,"), std::string::npos) << "a lost table is begun anew";
+}
+
 TEST(StatsTable, FullDiskIsAnError) {
   StatsTable* table = nullptr;
   EXPECT_THROW(table = new StatsTable("/dev/full"), Error);

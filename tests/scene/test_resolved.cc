@@ -152,12 +152,12 @@ TEST(SceneHash, ChangesWithWhatDecidesTheParticlesOnly) {
   const std::string hash = scene_hash(parse(kMinimal));
   EXPECT_TRUE(matches(hash, "[0-9a-f]{16}"));
   EXPECT_EQ(scene_hash(parse(kMinimal)), hash);
-  for (const char* change :
-       {"threads=2", "title=\"x\"", "output.folder=\"x\"", "render.width=320", "body.0.color=[0,0,0]"}) {
+  for (const char* change : {"threads=2", "title=\"x\"", "output.folder=\"x\"", "render.width=320",
+                             "body.0.color=[0,0,0]", "end_time=2", "checkpoint.keep=5"}) {
     EXPECT_EQ(scene_hash(parse(kMinimal, {change})), hash) << change;
   }
   for (const char* change :
-       {"seed=2", "end_time=2", "body.0.radius=0.25", "material.snow.density=401", "limits.max_dt=1"}) {
+       {"seed=2", "frame_rate=30", "body.0.radius=0.25", "material.snow.density=401", "limits.max_dt=1"}) {
     EXPECT_NE(scene_hash(parse(kMinimal, {change})), hash) << change;
   }
 }

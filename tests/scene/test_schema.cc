@@ -39,6 +39,7 @@ TEST(Schema, EveryFieldOfTheSettingsHasAKey) {
   EXPECT_EQ(key_count("camera"), field_count<CameraSettings>());
   EXPECT_EQ(key_count("render"), field_count<RenderSettings>());
   EXPECT_EQ(key_count("output"), field_count<OutputSettings>());
+  EXPECT_EQ(key_count("checkpoint"), field_count<CheckpointSettings>());
   // The root also holds one field per other section, and the path of the file.
   EXPECT_EQ(key_count("") + schema().size() - 1 + 1, field_count<Scene>());
 }

@@ -54,7 +54,9 @@ class FakeSimulation final : public Simulation {
   double time() const override { return frame_time(frame_); }
   std::int64_t particle_count() const override { return 1; }
   TimeStep step() override { return {}; }
-  FrameReport advance_frame() override {
+  Checkpoint checkpoint() const override { return {}; }
+  void restore(const Checkpoint&) override {}
+  std::optional<FrameReport> advance_frame(const Pause&) override {
     gate_.pass();
     if (frame_ + 1 == fail_at_) throw Error(ErrorKind::numerical, "particle 7 cannot go on");
     ++frame_;

@@ -4,6 +4,7 @@
 #include <firn/apps/scene_options.h>
 #include <firn/core/log.h>
 #include <firn/scene/build_world.h>
+#include <firn/simulation/memory_estimate.h>
 #include <firn/simulation/simulation.h>
 #include <fmt/format.h>
 
@@ -54,13 +55,22 @@ Calibration calibrate(const Scene& scene, const WorldPlan& plan) {
   return calibration;
 }
 
-/// Particles that emitters with a rate make in the whole run.
-double emitted_particles(const Scene& scene, const EmitterSettings& emitter, const WorldPlan& plan) {
-  if (emitter.keep_full) return 0;
-  const double volume_rate =
-      emitter.volume_rate ? *emitter.volume_rate : *emitter.mass_rate / scene.find_material(emitter.material)->density;
-  const double end = std::min(scene.end_time, emitter.stop.value_or(scene.end_time));
-  return std::max(0.0, end - emitter.start) * volume_rate / plan.particle_volume;
+/// What a crash would cost, and what it takes that it costs no more.
+void print_checkpoints(const Scene& scene, const WorldPlan& plan) {
+  const CheckpointSettings& settings = scene.checkpoint;
+  const double minutes = settings.every_minutes;
+  const std::string frames = settings.every_frames == 1 ? "1 frame" : fmt::format("{} frames", settings.every_frames);
+  std::string loss = "the whole run";
+  if (minutes > 0 && settings.every_frames > 0) {
+    loss = fmt::format("{:g} min of computing or {} (whichever is less)", minutes, frames);
+  } else if (minutes > 0) {
+    loss = fmt::format("{:g} min of computing", minutes);
+  } else if (settings.every_frames > 0) {
+    loss = frames;
+  }
+  const std::string kept = settings.keep > 0 ? fmt::format("the newest {}", settings.keep) : "all";
+  fmt::print("  checkpoint  {:.3f} GiB each, twice that in the middle of a frame; {} stay; a crash loses {} at most\n",
+             checkpoint_bytes(scene, plan) / 0x1p30, kept, loss);
 }
 
 void check_scene(const SceneOptions& options) {
@@ -75,7 +85,8 @@ void check_scene(const SceneOptions& options) {
   const double dt = calibration.dt_cells * plan.cell_size;
   const double frames = std::floor(scene.end_time * scene.frame_rate) + 1;
   const double steps = std::ceil(scene.end_time / dt);
-  const double memory = (particles + 0.5 * emitted) * kBytesPerParticle[precision];
+  // A checkpoint is gathered and then laid out as a file before it is written.
+  const double memory = (particles + 0.5 * emitted) * kBytesPerParticle[precision] + 2 * checkpoint_bytes(scene, plan);
   fmt::print("{} is fine\n", options.file);
   fmt::print("  cell size   {:.4g} m\n", plan.cell_size);
   for (const WorldPlan::Body& body : plan.bodies) {
@@ -92,6 +103,7 @@ void check_scene(const SceneOptions& options) {
   fmt::print("  memory      {:.2f} GiB of {:.1f} GiB\n", memory / 0x1p30, static_cast<double>(total_memory()) / 0x1p30);
   fmt::print("  disk        {:.2f} GiB for {} frames\n",
              frames * particles * kFrameBytesPerParticle[precision] / 0x1p30, frames);
+  print_checkpoints(scene, plan);
   fmt::print("  time step   {:.2g} s at the start, by {}\n", dt, calibration.limit);
   fmt::print("  steps       {:.0f} or more: faster or stiffer material takes shorter ones\n", steps);
   fmt::print("  time        {} or more, pictures not counted\n",

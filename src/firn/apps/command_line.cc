@@ -41,6 +41,7 @@ std::string unexpected_argument(const CLI::App& program) {
 
 void add_commands(CLI::App& program) {
   add_run(program);
+  add_resume(program);
   add_check(program);
   add_view(program);
   add_render(program);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <firn/apps/progress.h>
 #include <CLI/CLI.hpp>
 
 #include <stdexcept>
@@ -15,6 +16,7 @@ struct Interrupted : std::runtime_error {
 };
 
 void add_run(CLI::App& program);
+void add_resume(CLI::App& program);
 void add_check(CLI::App& program);
 void add_view(CLI::App& program);
 void add_render(CLI::App& program);
@@ -24,6 +26,9 @@ void add_materials(CLI::App& program);
 void add_point(CLI::App& program);
 void add_doctor(CLI::App& program);
 void add_bench(CLI::App& program);
+
+/// --progress, of the commands that compute frames.
+void add_progress_option(CLI::App& command, Progress::Style& style);
 
 /// All of them.
 void add_commands(CLI::App& program);

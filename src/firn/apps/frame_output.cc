@@ -1,5 +1,7 @@
 #include <firn/apps/frame_output.h>
+#include <firn/core/error.h>
 #include <firn/core/log.h>
+#include <firn/io/frame_reader.h>
 #include <firn/io/frame_series.h>
 #include <firn/io/frame_writer.h>
 #include <firn/io/stats_table.h>
@@ -7,6 +9,7 @@
 #include <firn/scene/resolved.h>
 #include <fmt/format.h>
 
+#include <map>
 #include <utility>
 
 namespace firn {
@@ -81,6 +84,51 @@ std::vector<std::string> further_columns(const Scene& scene) {
   return names;
 }
 
+StatsTable stats_of(const Scene& scene, const RunFolder& folder, const FrameHistory& history) {
+  if (history.frames == 0) return StatsTable(folder.stats(), further_columns(scene));
+  return StatsTable::resume(folder.stats(), further_columns(scene), history.frames, history.keeps_later);
+}
+
+std::vector<ProbeTable> probes_of(const Scene& scene, const RunFolder& folder, const FrameHistory& history) {
+  std::vector<ProbeTable> tables;
+  for (const ProbeSettings& probe : scene.probes) {
+    const std::filesystem::path path = folder.probe(probe.name);
+    tables.push_back(history.frames == 0 ? ProbeTable(path)
+                                         : ProbeTable::resume(path, history.frames, history.keeps_later));
+  }
+  return tables;
+}
+
+/// The frames that are there, by number. Those that a changed scene makes wrong are removed.
+std::map<std::int64_t, SeriesFrame> frames_of(const Scene& scene, const RunFolder& folder,
+                                              const FrameHistory& history) {
+  std::map<std::int64_t, SeriesFrame> frames;
+  if (history.frames == 0) return frames;
+  const auto exists = [&](std::int64_t frame) {
+    std::error_code error;
+    return std::filesystem::exists(folder.particles() / frame_file_name(frame), error);
+  };
+  std::int64_t missing = 0;
+  for (std::int64_t frame = 1; frame <= history.frames || exists(frame); ++frame) {
+    const std::string name = frame_file_name(frame);
+    if (frame > history.frames && !history.keeps_later) {
+      std::error_code error;
+      std::filesystem::remove(folder.particles() / name, error);
+      std::filesystem::remove(folder.image(frame), error);
+    } else if (exists(frame)) {
+      frames[frame] = {name, static_cast<double>(frame - 1) / scene.frame_rate};
+    } else {
+      ++missing;
+    }
+  }
+  if (missing > 0) {
+    log_warning(
+        fmt::format("{} of the frames 1 to {} are missing in {}; firn resume --from-frame computes frames again",
+                    missing, history.frames, folder.particles().string()));
+  }
+  return frames;
+}
+
 }  // namespace
 
 std::vector<std::vector<ProbeRow>> probe_rows(const Simulation& simulation) {
@@ -100,15 +148,23 @@ struct FrameOutput::Files {
   StatsTable stats;
   std::vector<ProbeTable> probes;
   FrameMetadata metadata;
-  std::vector<SeriesFrame> series = {};
+  std::map<std::int64_t, SeriesFrame> frames = {};
+
+  void write_series(const RunFolder& folder) const {
+    std::vector<SeriesFrame> series;
+    for (const auto& [number, frame] : frames) series.push_back(frame);
+    write_frame_series(folder.particles() / kFrameSeriesName, series);
+  }
 };
 
-FrameOutput::FrameOutput(const Scene& scene, const RunFolder& folder)
+FrameOutput::FrameOutput(const Scene& scene, const RunFolder& folder, const FrameHistory& history)
     : scene_(scene),
       drawing_(scene_),
       folder_(folder),
-      files_(new Files{StatsTable(folder.stats(), further_columns(scene_)), {}, metadata_of(scene)}) {
-  for (const ProbeSettings& probe : scene.probes) files_->probes.emplace_back(folder.probe(probe.name));
+      history_(history),
+      files_(new Files{stats_of(scene_, folder, history), probes_of(scene_, folder, history), metadata_of(scene),
+                       frames_of(scene, folder, history)}) {
+  if (history.frames > 0) files_->write_series(folder);
   if (scene.render.film && scene.render.every_nth > 0) {
     if (program_exists("ffmpeg")) {
       film_ = std::make_unique<Film>(folder.film(), scene.render.width, scene.render.height,
@@ -138,19 +194,25 @@ void FrameOutput::submit(FinishedFrame frame) {
   changed_.notify_all();
 }
 
+void FrameOutput::wait() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return (queue_.empty() && !busy_) || failure_ != nullptr; });
+  if (failure_ != nullptr) std::rethrow_exception(failure_);
+  files_->stats.sync();
+  for (const ProbeTable& probe : files_->probes) probe.sync();
+}
+
 void FrameOutput::finish() {
-  {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return (queue_.empty() && !busy_) || failure_ != nullptr; });
-    if (failure_ != nullptr) std::rethrow_exception(failure_);
-  }
+  wait();
   if (film_ != nullptr) film_->close();
 }
 
 void FrameOutput::work() {
+  // The film's pictures of earlier frames come first; until then `busy_` is set.
+  bool is_history_drawn = false;
   while (true) {
     FinishedFrame frame;
-    {
+    if (is_history_drawn) {
       std::unique_lock lock(mutex_);
       changed_.wait(lock, [&] { return closing_ || !queue_.empty(); });
       if (closing_) return;
@@ -161,8 +223,13 @@ void FrameOutput::work() {
     }
     std::exception_ptr failure;
     try {
-      write(frame);
-      draw(frame);
+      if (is_history_drawn) {
+        write(frame);
+        draw(frame);
+      } else {
+        draw_history();
+        is_history_drawn = true;
+      }
     } catch (...) {
       failure = std::current_exception();
     }
@@ -179,25 +246,58 @@ void FrameOutput::write(const FinishedFrame& frame) {
   FrameMetadata metadata = files_->metadata;
   metadata.frame = frame.report.frame;
   write_frame(folder_.particles() / name, frame.snapshot, metadata);
-  files_->series.push_back({name, frame.snapshot.time});
-  write_frame_series(folder_.particles() / kFrameSeriesName, files_->series);
+  files_->frames[frame.report.frame] = {name, frame.snapshot.time};
+  files_->write_series(folder_);
   files_->stats.append(row_of(frame));
   for (std::size_t i = 0; i < files_->probes.size(); ++i) {
     files_->probes[i].append(frame.report.frame, frame.report.time, frame.probes[i]);
   }
 }
 
+Image FrameOutput::draw(const Snapshot& snapshot) {
+  View view = drawing_.view_at(snapshot.time);
+  if (!view.camera) {
+    if (!camera_) camera_ = automatic_camera(snapshot, view);
+    view.camera = camera_;
+  }
+  return render_snapshot(snapshot, view);
+}
+
 void FrameOutput::draw(const FinishedFrame& frame) {
   const int every = scene_.render.every_nth;
   if (every == 0 || (frame.report.frame - 1) % every != 0) return;
-  View view = drawing_.view_at(frame.snapshot.time);
-  if (!view.camera) {
-    if (!camera_) camera_ = automatic_camera(frame.snapshot, view);
-    view.camera = camera_;
-  }
-  const Image image = render_snapshot(frame.snapshot, view);
+  const Image image = draw(frame.snapshot);
   write_png(folder_.image(frame.report.frame), image);
   if (film_ != nullptr) film_->add(image);
+}
+
+void FrameOutput::draw_history() {
+  const int every = scene_.render.every_nth;
+  if (every == 0) return;
+  for (std::int64_t frame = 1; frame <= history_.frames; frame += every) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (closing_) return;
+    }
+    if (!files_->frames.contains(frame)) continue;
+    const std::filesystem::path path = folder_.particles() / frame_file_name(frame);
+    try {
+      // The first one's camera is everybody's.
+      if (!camera_ && !drawing_.view_at(0).camera) {
+        const Snapshot first = read_frame(path);
+        camera_ = automatic_camera(first, drawing_.view_at(first.time));
+      }
+      if (film_ == nullptr) return;
+      std::optional<Image> image = read_png(folder_.image(frame));
+      if (!image || image->width != scene_.render.width || image->height != scene_.render.height) {
+        image = draw(read_frame(path));
+        write_png(folder_.image(frame), *image);
+      }
+      film_->add(*image);
+    } catch (const Error& error) {
+      log_warning(fmt::format("the film goes without the picture of frame {}: {}", frame, error.what()));
+    }
+  }
 }
 
 }  // namespace firn

@@ -26,6 +26,12 @@ struct FinishedFrame {
   std::vector<std::vector<ProbeRow>> probes = {};  ///< of each probe of the scene
 };
 
+/// What a run that goes on finds in its folder.
+struct FrameHistory {
+  std::int64_t frames = 0;  ///< those up to here stay as they are
+  bool keeps_later = true;  ///< whether what is later stays listed until it is replaced by its like
+};
+
 /// The rows of the scene's probes at the frame that the simulation stands at.
 std::vector<std::vector<ProbeRow>> probe_rows(const Simulation& simulation);
 
@@ -33,7 +39,7 @@ std::vector<std::vector<ProbeRow>> probe_rows(const Simulation& simulation);
 /// computed.
 class FrameOutput {
  public:
-  FrameOutput(const Scene& scene, const RunFolder& folder);
+  FrameOutput(const Scene& scene, const RunFolder& folder, const FrameHistory& history = {});
   /// Stops without closing the film if finish() was not called.
   ~FrameOutput();
   FrameOutput(const FrameOutput&) = delete;
@@ -41,6 +47,9 @@ class FrameOutput {
 
   /// Hands a frame over; waits while two are still unwritten. Throws what went wrong with an earlier one.
   void submit(FinishedFrame frame);
+
+  /// Waits until every frame that was handed over is on the disk. Throws what went wrong.
+  void wait();
 
   /// Waits for everything and closes the film. Throws what went wrong.
   void finish();
@@ -51,12 +60,15 @@ class FrameOutput {
   void work();
   void write(const FinishedFrame& frame);
   void draw(const FinishedFrame& frame);
+  Image draw(const Snapshot& snapshot);
+  void draw_history();
 
   struct Files;
 
   const Scene scene_;
   const SceneDrawing drawing_;
   const RunFolder folder_;
+  const FrameHistory history_;
   std::unique_ptr<Files> files_;
   std::unique_ptr<Film> film_;
   std::optional<Camera> camera_;  // of the first picture, so that an automatic camera stands still
@@ -64,7 +76,7 @@ class FrameOutput {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<FinishedFrame> queue_;
-  bool busy_ = false, closing_ = false;
+  bool busy_ = true, closing_ = false;
   std::exception_ptr failure_;
   std::thread thread_;
 };

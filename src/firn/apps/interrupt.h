@@ -2,7 +2,7 @@
 
 namespace firn {
 
-/// From now on the first SIGINT or SIGTERM only sets a flag; a second one ends the program as usual.
+/// From now on the first SIGINT or SIGTERM only sets a flag; a second one ends the program at once, with exit code 130.
 void catch_interrupts();
 
 /// Whether the user has asked to stop.

@@ -16,7 +16,7 @@ std::string duration_text(double seconds) {
 
 std::string Progress::line(const FrameReport& report) {
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-  const double done = static_cast<double>(report.frame - 1), all = static_cast<double>(frames_ - 1);
+  const double done = static_cast<double>(report.frame - first_), all = static_cast<double>(frames_ - first_);
   const double eta = done > 0 ? elapsed / done * (all - done) : 0;
   const double rate = report.wall_seconds > 0 ? static_cast<double>(report.particles) *
                                                     static_cast<double>(report.steps) / report.wall_seconds

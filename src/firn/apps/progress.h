@@ -12,7 +12,9 @@ class Progress {
  public:
   enum class Style { text, json };
 
-  Progress(Style style, std::int64_t frame_count) : style_(style), frames_(frame_count), start_(Clock::now()) {}
+  /// @param first_frame the one that is there before anything is computed
+  Progress(Style style, std::int64_t frame_count, std::int64_t first_frame = 1)
+      : style_(style), frames_(frame_count), first_(first_frame), start_(Clock::now()) {}
 
   /// One line without a trailing newline, either for people
   ///   frame 0042/0073 | t 1.708 s | 37 steps, dt 1.1e-3 s (elastic_wave of "snow") | 120000 particles | ...
@@ -23,7 +25,7 @@ class Progress {
   using Clock = std::chrono::steady_clock;
 
   Style style_;
-  std::int64_t frames_;
+  std::int64_t frames_, first_;
   Clock::time_point start_;
 };
 

@@ -5,6 +5,8 @@
 #include <firn/scene/resolved.h>
 #include <fmt/format.h>
 
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <vector>
@@ -15,9 +17,11 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> results_of(const RunFolder& folder) {
-  return {folder.particles(), folder.images(), folder.film(),    folder.stats(),
-          folder.probes(),    folder.scene(),  folder.run_info()};
+  return {folder.particles(), folder.images(), folder.film(),     folder.stats(),
+          folder.probes(),    folder.scene(),  folder.run_info(), folder.checkpoints()};
 }
+
+}  // namespace
 
 void make_folder(const fs::path& path) {
   std::error_code error;
@@ -26,8 +30,6 @@ void make_folder(const fs::path& path) {
   throw Error(ErrorKind::files, fmt::format("cannot create the output folder {}: {}; choose another one with -o",
                                             path.string(), error ? error.message() : "a file has its name"));
 }
-
-}  // namespace
 
 fs::path RunFolder::image(std::int64_t frame) const { return images() / fmt::format("image.{:04}.png", frame); }
 
@@ -47,6 +49,7 @@ RunFolder prepare_run_folder(const Scene& scene, bool force) {
       throw Error(ErrorKind::files, fmt::format("cannot remove the old {}: {}", result.string(), error.message()));
     }
   }
+  remove_part_files(folder);
   make_folder(folder.particles());
   if (scene.render.every_nth > 0) make_folder(folder.images());
   if (!scene.probes.empty()) make_folder(folder.probes());
@@ -54,12 +57,25 @@ RunFolder prepare_run_folder(const Scene& scene, bool force) {
   return folder;
 }
 
+void remove_part_files(const RunFolder& folder) {
+  for (const fs::path& place :
+       {folder.root, folder.particles(), folder.images(), folder.probes(), folder.checkpoints()}) {
+    std::vector<fs::path> parts;
+    std::error_code error;
+    for (fs::directory_iterator entry(place, error), end; !error && entry != end; entry.increment(error)) {
+      if (entry->path().extension() == ".part") parts.push_back(entry->path());
+    }
+    // What cannot be removed will be written over, or that will fail and say why.
+    for (const fs::path& part : parts) fs::remove(part, error);
+  }
+}
+
 void write_run_info(const RunFolder& folder, const Scene& scene, const RunInfo& info) {
   nlohmann::ordered_json json;
   json["program"] = "firn";
   json["version"] = FIRN_VERSION;
   json["status"] = info.status;
-  json["scene"] = scene.file.string();
+  json["scene"] = info.scene.empty() ? scene.file.string() : info.scene;
   json["scene_hash"] = scene_hash(scene);
   json["frames"] = info.frames;
   json["particles"] = info.particles;
@@ -67,7 +83,56 @@ void write_run_info(const RunFolder& folder, const Scene& scene, const RunInfo& 
   json["threads"] = info.threads;
   json["simd"] = simd_target();
   json["wall_seconds"] = info.wall_seconds;
-  write_file_atomically(folder.run_info(), json.dump(2) + "\n");
+  json["checkpoints"] = nlohmann::ordered_json::array();
+  for (const CheckpointEntry& entry : info.checkpoints) {
+    json["checkpoints"].push_back({{"file", entry.file},
+                                   {"frame", entry.frame},
+                                   {"inside_frame", entry.is_inside_frame},
+                                   {"time", entry.time},
+                                   {"steps", entry.steps},
+                                   {"bytes", entry.stamp.bytes},
+                                   {"hash", entry.stamp.hash}});
+  }
+  write_file_atomically(folder.run_info(), json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n",
+                        Durability::synced);
+}
+
+RunInfo read_run_info(const RunFolder& folder) {
+  const fs::path path = folder.run_info();
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    throw Error(ErrorKind::files, fmt::format("{} is not the output folder of a run: it holds no readable {}",
+                                              folder.root.string(), path.filename().string()));
+  }
+  try {
+    const nlohmann::json json = nlohmann::json::parse(stream);
+    RunInfo info;
+    info.status = json.at("status").get<std::string>();
+    info.scene = json.at("scene").get<std::string>();
+    info.frames = json.at("frames").get<std::int64_t>();
+    info.particles = json.at("particles").get<std::int64_t>();
+    info.cell_size = json.at("cell_size").get<double>();
+    info.wall_seconds = json.at("wall_seconds").get<double>();
+    info.threads = json.at("threads").get<int>();
+    for (const nlohmann::json& entry : json.value("checkpoints", nlohmann::json::array())) {
+      info.checkpoints.push_back({entry.at("file").get<std::string>(),
+                                  entry.at("frame").get<std::int64_t>(),
+                                  entry.at("inside_frame").get<bool>(),
+                                  entry.at("time").get<double>(),
+                                  entry.at("steps").get<std::int64_t>(),
+                                  {entry.at("bytes").get<std::uint64_t>(), entry.at("hash").get<std::string>()}});
+      // A name only: a damaged or foreign list must not lead out of the folder.
+      if (fs::path(info.checkpoints.back().file).filename() != info.checkpoints.back().file) {
+        throw Error(ErrorKind::files, fmt::format("{}: damaged: \"{}\" is not the name of a checkpoint", path.string(),
+                                                  info.checkpoints.back().file));
+      }
+    }
+    return info;
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(ErrorKind::files,
+                fmt::format("{}: damaged, or not of a run: {}; compute the run again with firn run --force",
+                            path.string(), error.what()));
+  }
 }
 
 }  // namespace firn

@@ -10,7 +10,9 @@ namespace {
 
 constexpr std::int64_t kFewestPreviewParticles = 1000;
 
-std::string quoted(const std::string& text) {
+}  // namespace
+
+std::string toml_quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') result += '\\';
@@ -18,8 +20,6 @@ std::string quoted(const std::string& text) {
   }
   return result + "\"";
 }
-
-}  // namespace
 
 std::shared_ptr<SceneOptions> add_scene_options(CLI::App& command) {
   const auto options = std::make_shared<SceneOptions>();
@@ -42,14 +42,14 @@ Scene load(const SceneOptions& options) {
   std::vector<std::string> set = options.set;
   if (options.particles > 0) set.push_back(fmt::format("resolution.particles={}", options.particles));
   if (options.threads > 0) set.push_back(fmt::format("threads={}", options.threads));
-  if (!options.folder.empty()) set.push_back("output.folder=" + quoted(options.folder));
+  if (!options.folder.empty()) set.push_back("output.folder=" + toml_quoted(options.folder));
   Scene scene = load_scene(options.file, set);
   if (!options.preview) return scene;
   set.push_back(
       fmt::format("resolution.particles={}", std::max(plan_world(scene).particles / 8, kFewestPreviewParticles)));
   set.push_back(fmt::format("render.width={}", std::max(scene.render.width / 2, 16)));
   set.push_back(fmt::format("render.height={}", std::max(scene.render.height / 2, 16)));
-  if (options.folder.empty()) set.push_back("output.folder=" + quoted(scene.output.folder + "_preview"));
+  if (options.folder.empty()) set.push_back("output.folder=" + toml_quoted(scene.output.folder + "_preview"));
   return load_scene(options.file, set);
 }
 

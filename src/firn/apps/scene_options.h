@@ -20,6 +20,9 @@ struct SceneOptions {
   bool preview = false;
 };
 
+/// A TOML string, for an override.
+std::string toml_quoted(const std::string& text);
+
 /// Declares SCENE, --set, -o, --threads, --particles and --preview.
 std::shared_ptr<SceneOptions> add_scene_options(CLI::App& command);
 

@@ -18,17 +18,21 @@ namespace {
 
 }  // namespace
 
-void append_text(const std::filesystem::path& path, const std::string& text) {
+void append_text(const std::filesystem::path& path, std::string_view text) {
   const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (file < 0) fail(path, errno);
   struct stat before = {};
   ::fstat(file, &before);
-  const ssize_t written = ::write(file, text.data(), text.size());
   int reason = 0;
-  if (written != static_cast<ssize_t>(text.size())) {
-    reason = written < 0 ? errno : ENOSPC;
-    if (S_ISREG(before.st_mode) && ::ftruncate(file, before.st_size) != 0) reason = errno;
+  while (!text.empty() && reason == 0) {
+    const ssize_t written = ::write(file, text.data(), text.size());
+    if (written >= 0) {
+      text.remove_prefix(static_cast<std::size_t>(written));
+    } else if (errno != EINTR) {
+      reason = errno;
+    }
   }
+  if (reason != 0 && S_ISREG(before.st_mode) && ::ftruncate(file, before.st_size) != 0) reason = errno;
   if (::close(file) != 0 && reason == 0) reason = errno;
   if (reason != 0) fail(path, reason);
 }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// The few uses of HDF5 that frames make, with failures as exceptions. Internal to the io module.
+/// The few uses of HDF5 that frames and checkpoints make, with failures as exceptions. Internal to the io module.
 namespace firn::hdf5 {
 
 /// A call into HDF5 failed. Callers turn it into firn::Error with the path.
@@ -66,6 +66,18 @@ inline hid_t native_type<double>() {
 template <>
 inline hid_t native_type<std::uint8_t>() {
   return H5T_NATIVE_UINT8;
+}
+template <>
+inline hid_t native_type<std::uint16_t>() {
+  return H5T_NATIVE_UINT16;
+}
+template <>
+inline hid_t native_type<std::uint32_t>() {
+  return H5T_NATIVE_UINT32;
+}
+template <>
+inline hid_t native_type<std::uint64_t>() {
+  return H5T_NATIVE_UINT64;
 }
 template <>
 inline hid_t native_type<std::int32_t>() {

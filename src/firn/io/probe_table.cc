@@ -1,21 +1,26 @@
-#include <firn/io/append_file.h>
-#include <firn/io/atomic_file.h>
 #include <firn/io/probe_table.h>
 #include <fmt/format.h>
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace firn {
 namespace {
+
+constexpr const char* kHeader = "frame,time,point,x,y,z,density,velocity_x,velocity_y,velocity_z,pressure\n";
 
 /// The shortest text that reads back to the same double.
 std::string field(double number) { return std::isnan(number) ? "" : fmt::format("{}", number); }
 
 }  // namespace
 
-ProbeTable::ProbeTable(const std::filesystem::path& path) : path_(path) {
-  write_file_atomically(path_, "frame,time,point,x,y,z,density,velocity_x,velocity_y,velocity_z,pressure\n");
+ProbeTable::ProbeTable(const std::filesystem::path& path) : rows_(path, kHeader) {}
+
+ProbeTable::ProbeTable(FrameRows rows) : rows_(std::move(rows)) {}
+
+ProbeTable ProbeTable::resume(const std::filesystem::path& path, std::int64_t frame, bool keep_later) {
+  return ProbeTable(FrameRows::resume(path, kHeader, frame, keep_later));
 }
 
 void ProbeTable::append(std::int64_t frame, double time, std::span<const ProbeRow> rows) {
@@ -26,7 +31,7 @@ void ProbeTable::append(std::int64_t frame, double time, std::span<const ProbeRo
                         row.position[2], row.density, field(row.velocity[0]), field(row.velocity[1]),
                         field(row.velocity[2]), field(row.pressure));
   }
-  append_text(path_, text);
+  rows_.append(frame, text);
 }
 
 }  // namespace firn

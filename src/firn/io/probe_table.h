@@ -1,11 +1,11 @@
 #pragma once
 
 #include <firn/core/linear_algebra.h>
+#include <firn/io/frame_rows.h>
 
 #include <cstdint>
 #include <filesystem>
 #include <span>
-#include <vector>
 
 namespace firn {
 
@@ -24,11 +24,19 @@ class ProbeTable {
   /// Writes the header. Error(files) if the file cannot be written.
   explicit ProbeTable(const std::filesystem::path& path);
 
+  /// Goes on with the file of a run that goes on after `frame`, as FrameRows::resume().
+  static ProbeTable resume(const std::filesystem::path& path, std::int64_t frame, bool keep_later);
+
   /// Adds the rows of a frame by one write. Error(files) if they cannot be added.
   void append(std::int64_t frame, double time, std::span<const ProbeRow> rows);
 
+  /// Flushes all rows to the disk. Throws Error (files).
+  void sync() const { rows_.sync(); }
+
  private:
-  std::filesystem::path path_;
+  explicit ProbeTable(FrameRows rows);
+
+  FrameRows rows_;
 };
 
 }  // namespace firn

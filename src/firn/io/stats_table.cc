@@ -1,8 +1,8 @@
 #include <firn/core/error.h>
-#include <firn/io/append_file.h>
-#include <firn/io/atomic_file.h>
 #include <firn/io/stats_table.h>
 #include <fmt/format.h>
+
+#include <utility>
 
 namespace firn {
 
@@ -60,16 +60,26 @@ std::string csv_field(const Value& value) {
   return fmt::format("{}", std::get<double>(value));  // shortest text that reads back to the same double
 }
 
+std::string header(const std::vector<std::string>& further_columns) {
+  std::vector<std::string> names;
+  for (const StatsColumn& column : kColumns) names.emplace_back(column.name);
+  for (const std::string& name : further_columns) names.push_back(csv_text(name));
+  return fmt::format("{}\n", fmt::join(names, ","));
+}
+
 }  // namespace
 
 std::span<const StatsColumn> stats_columns() { return kColumns; }
 
 StatsTable::StatsTable(const std::filesystem::path& path, std::vector<std::string> further_columns)
-    : path_(path), further_columns_(further_columns.size()) {
-  std::vector<std::string> names;
-  for (const StatsColumn& column : kColumns) names.emplace_back(column.name);
-  for (const std::string& name : further_columns) names.push_back(csv_text(name));
-  write_file_atomically(path_, fmt::format("{}\n", fmt::join(names, ",")));
+    : path_(path), further_columns_(further_columns.size()), rows_(path, header(further_columns)) {}
+
+StatsTable::StatsTable(const std::filesystem::path& path, std::size_t further_columns, FrameRows rows)
+    : path_(path), further_columns_(further_columns), rows_(std::move(rows)) {}
+
+StatsTable StatsTable::resume(const std::filesystem::path& path, const std::vector<std::string>& further_columns,
+                              std::int64_t frame, bool keep_later) {
+  return {path, further_columns.size(), FrameRows::resume(path, header(further_columns), frame, keep_later)};
 }
 
 void StatsTable::append(const StatsRow& row) {
@@ -80,7 +90,7 @@ void StatsTable::append(const StatsRow& row) {
   std::vector<std::string> fields;
   for (const StatsColumn& column : kColumns) fields.push_back(csv_field(column.value(row)));
   for (const double number : row.further) fields.push_back(csv_field(number));
-  append_text(path_, fmt::format("{}\n", fmt::join(fields, ",")));
+  rows_.append(row.frame, fmt::format("{}\n", fmt::join(fields, ",")));
 }
 
 }  // namespace firn

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <firn/io/frame_rows.h>
+
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -48,13 +51,23 @@ class StatsTable {
   /// Begins a new file (an old one is replaced) with the header line. Throws Error (files).
   explicit StatsTable(const std::filesystem::path& path, std::vector<std::string> further_columns = {});
 
+  /// Goes on with the file of a run that goes on after `frame`, as FrameRows::resume().
+  static StatsTable resume(const std::filesystem::path& path, const std::vector<std::string>& further_columns,
+                           std::int64_t frame, bool keep_later);
+
   /// Throws Error (files); the file then ends with the row before. Throws Error (usage) if the row has another number
   /// of further values than the table has further columns.
   void append(const StatsRow& row);
 
+  /// Flushes all rows to the disk. Throws Error (files).
+  void sync() const { rows_.sync(); }
+
  private:
+  StatsTable(const std::filesystem::path& path, std::size_t further_columns, FrameRows rows);
+
   std::filesystem::path path_;
   std::size_t further_columns_ = 0;
+  FrameRows rows_;
 };
 
 }  // namespace firn

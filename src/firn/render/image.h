@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace firn {
@@ -26,5 +27,8 @@ struct Image {
 
 /// Equal images give equal files. Appears under its name only when complete. Throws Error (files).
 void write_png(const std::filesystem::path& path, const Image& image);
+
+/// The picture of a file of write_png; nothing if there is none, or none that can be read.
+std::optional<Image> read_png(const std::filesystem::path& path);
 
 }  // namespace firn

@@ -47,4 +47,16 @@ void write_png(const std::filesystem::path& path, const Image& image) {
   write_file_atomically(path, bytes);
 }
 
+std::optional<Image> read_png(const std::filesystem::path& path) {
+  png_image png = {};
+  png.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_file(&png, path.c_str()) == 0) return std::nullopt;
+  png.format = PNG_FORMAT_RGB;
+  Image image(static_cast<int>(png.width), static_cast<int>(png.height));
+  const int is_read = png_image_finish_read(&png, nullptr, image.rgb.data(), 0, nullptr);
+  png_image_free(&png);
+  if (is_read == 0) return std::nullopt;
+  return image;
+}
+
 }  // namespace firn

@@ -14,7 +14,8 @@ namespace firn {
 std::string resolved_toml(const Scene& scene, const std::filesystem::path& folder = {});
 
 /// 16 hexadecimal digits: XXH64 of the resolved keys that decide where particles go. Title, names, colours, camera,
-/// pictures, threads and output folder do not count; nor does what is inside mesh files.
+/// pictures, threads, output folder, checkpoints and the end of the run do not count; nor does what is inside mesh
+/// files.
 std::string scene_hash(const Scene& scene);
 
 }  // namespace firn

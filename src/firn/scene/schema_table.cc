@@ -32,7 +32,12 @@ Section root() {
       K("precision", &Scene::precision).help("Arithmetic of the simulation: single is twice as fast."),
       K("up", &Scene::up).help("The axis that points up."),
       K("seed", &Scene::seed).at_least(0).help("Number that the random placement of particles starts from."),
-      K("end_time", &Scene::end_time).unit("s").above(0).required().help("Simulated time at which the run ends."),
+      K("end_time", &Scene::end_time)
+          .unit("s")
+          .above(0)
+          .required()
+          .presentation()
+          .help("Simulated time at which the run ends."),
       K("frame_rate", &Scene::frame_rate)
           .unit("1/s")
           .above(0)
@@ -200,6 +205,27 @@ Section output() {
   return section;
 }
 
+Section checkpoint() {
+  Section section = table("checkpoint", &Scene::checkpoint,
+                          "When the whole state is saved, besides at frame 1 and at the end, for `firn resume`.");
+  section.keys = {
+      K("every_minutes", &CheckpointSettings::every_minutes)
+          .unit("min")
+          .at_least(0)
+          .presentation()
+          .help("Minutes of computing that a crash may cost; 0: not by the clock."),
+      K("every_frames", &CheckpointSettings::every_frames)
+          .at_least(0)
+          .presentation()
+          .help("A checkpoint after every n-th frame, for `firn resume --from-frame`; 0: not by frames."),
+      K("keep", &CheckpointSettings::keep)
+          .at_least(0)
+          .presentation()
+          .help("How many checkpoints stay, the newest ones; 0: all. An old one goes only when the new one is whole."),
+  };
+  return section;
+}
+
 }  // namespace
 
 std::vector<Section> make_schema() {
@@ -219,7 +245,8 @@ std::vector<Section> make_schema() {
           make_probe_section(),
           camera(),
           render(),
-          output()};
+          output(),
+          checkpoint()};
 }
 
 }  // namespace firn

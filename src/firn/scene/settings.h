@@ -286,6 +286,13 @@ struct RenderSettings {
   double film_rate_of(double rate) const { return film_rate.value_or(std::min(rate, 60.0)); }
 };
 
+/// When the whole state is saved, so that the run can go on after a crash.
+struct CheckpointSettings {
+  double every_minutes = 5;  ///< of wall time; 0: not by the clock
+  int every_frames = 0;      ///< 0: not by frames
+  int keep = 2;              ///< newest ones that are kept; 0: all
+};
+
 struct OutputSettings {
   std::string folder;
 };
@@ -323,6 +330,7 @@ struct Scene {
   CameraSettings camera;
   RenderSettings render;
   OutputSettings output;
+  CheckpointSettings checkpoint;
 
   std::filesystem::path file;  ///< the scene file, as given; not a key
 

@@ -1,10 +1,13 @@
 #include <firn/core/error.h>
 #include <firn/core/log.h>
+#include <firn/core/simd.h>
 #include <firn/integrators/step.h>
 #include <firn/integrators/verbs.h>
 #include <firn/materials/model_info.h>
 #include <firn/measure/output_columns.h>
 #include <firn/scene/vary_parameters.h>
+#include <firn/simulation/checkpoint_state.h>
+#include <firn/simulation/frame_state.h>
 #include <firn/simulation/runaways.h>
 #include <firn/simulation/simulation.h>
 #include <firn/simulation/sources.h>
@@ -12,12 +15,11 @@
 #include <fmt/ranges.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
-#include <xxhash.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -45,9 +47,7 @@ class SimulationOf final : public Simulation {
     auto built = build_world<Real, dim>(scene_);
     plan_ = std::move(built.plan);
     world_ = std::make_unique<World<Real, dim>>(std::move(built.world));
-    limits_.particle_cfl = scene.limits.particle_cfl;
-    limits_.elastic_cfl = scene.limits.elastic_cfl;
-    if (scene.limits.max_dt) limits_.max_dt = *scene.limits.max_dt;
+    set_limits();
     for (const auto& material : world_->materials) material_names_.push_back(material.name);
     sources_ = std::make_unique<Sources<Real, dim>>(scene_, plan_, *world_);
     StepReport prepared;
@@ -82,26 +82,86 @@ class SimulationOf final : public Simulation {
     return taken;
   }
 
-  FrameReport advance_frame() override {
+  std::optional<FrameReport> advance_frame(const Pause& pause) override {
     const auto start = std::chrono::steady_clock::now();
-    keep();
+    int attempt = 0;
+    double seconds_before = 0;
+    std::optional<TimeStep> promised;
+    if (paused_) {
+      attempt = paused_->attempt;
+      seconds_before = report_.wall_seconds;
+      promised = paused_->next;
+      paused_.reset();
+    } else {
+      keep();
+    }
     std::optional<ParticleFailure> failure;
-    for (int attempt = 0; attempt < kMaxTries; ++attempt) {
-      if (attempt > 0) retry(*failure);
-      failure = try_frame();
+    for (;; ++attempt) {
+      failure = try_frame(promised, pause);
+      report_.wall_seconds =
+          seconds_before + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      if (paused_) {
+        paused_->attempt = attempt;
+        return std::nullopt;
+      }
       if (!failure) {
         report_.retries = attempt;
-        report_.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return report_;
       }
-      if (!kept_) break;
+      if (!kept_ || attempt + 1 == kMaxTries) break;
+      retry(*failure);
+      promised.reset();
     }
     const std::string text = describe(*failure, report_.dt);
     if (kept_) {
-      restore();
+      take_back();
       report_ = kept_->report;
     }
     throw Error(ErrorKind::numerical, text);
+  }
+
+  Checkpoint checkpoint() const override {
+    if (!world_->drained) throw Error(ErrorKind::usage, "a checkpoint must be taken where a frame ends or pauses");
+    Checkpoint checkpoint;
+    checkpoint.arithmetic = simd_target() == "baseline" ? "separate" : "fused";
+    checkpoint.layout = layout_text(*world_);
+    checkpoint.state = present_state();
+    if (paused_ && kept_) checkpoint.frame_start = saved(*kept_, {kept_->particles.begin(), kept_->particles.end()});
+    return checkpoint;
+  }
+
+  void restore(const Checkpoint& checkpoint) override {
+    if (const std::string layout = layout_text(*world_); layout != checkpoint.layout) {
+      throw Error(ErrorKind::files,
+                  fmt::format("the checkpoint cannot be used: it is {}, and the scene {}", checkpoint.layout, layout));
+    }
+    // Everything that can be refused comes before the first change.
+    Restored restored = read_state(checkpoint.state);
+    std::optional<FrameState<Real, dim>> frame_start;
+    if (checkpoint.frame_start) frame_start = read_state(*checkpoint.frame_start).state;
+    std::optional<Paused> paused;
+    if (checkpoint.state.texts.contains("next.limit")) paused = read_paused(checkpoint.state);
+    const auto& state = restored.state;
+    const std::string found = fmt::format(
+        "{:016x}",
+        hash_of<Real, dim>({state.particles.begin(), state.particles.end()}, state.t, state.steps, restored.frame));
+    if (const std::string& expected = text_of(checkpoint.state, "hash"); found != expected) {
+      throw Error(ErrorKind::files, fmt::format("the checkpoint cannot be used: it does not lead to the state that was "
+                                                "saved (its hash is {}, and was {})",
+                                                found, expected));
+    }
+
+    kept_ = std::move(restored.state);
+    take_back();
+    frame_ = restored.frame;
+    halvings_ = restored.halvings;
+    set_limits();
+    report_ = kept_->report;
+    kept_ = std::move(frame_start);
+    paused_ = std::move(paused);
+    if (!paused_) return;
+    limit_name_ = paused_->next.limit;
+    paused_->next.limit = limit_name_;
   }
 
   Snapshot snapshot() const override {
@@ -157,83 +217,108 @@ class SimulationOf final : public Simulation {
     return values;
   }
 
-  std::uint64_t hash() const override {
-    const std::uint64_t clock[2] = {world_->steps, static_cast<std::uint64_t>(frame_)};
-    std::uint64_t hash = XXH64(clock, sizeof(clock), XXH64(&world_->t, sizeof(world_->t), 1));
-    for (const auto& material : world_->materials) {
-      const std::uint64_t part = material.particles.hash();
-      hash = XXH64(&part, sizeof(part), hash);
-    }
-    return hash;
-  }
+  std::uint64_t hash() const override { return hash_of(particles_of(*world_), world_->t, world_->steps, frame_); }
 
  private:
-  /// What a frame can be taken back to.
-  struct Kept {
-    std::vector<Particles<Real, dim>> particles;
-    std::vector<std::array<double, 3>> speeds;  ///< largest, of waves, viscosity
-    double t, max_speed, max_collider_speed;
-    std::uint64_t steps;
-    std::int64_t parked;
-    typename Sources<Real, dim>::Counts counts;
-    FrameReport report;
+  /// Where a frame has paused.
+  struct Paused {
+    TimeStep next;
+    int attempt = 0;
   };
+
+  struct Restored {
+    FrameState<Real, dim> state;
+    std::int64_t frame;
+    int halvings;
+  };
+
+  FrameState<Real, dim> present() const {
+    FrameState<Real, dim> state = state_without_particles(*world_);
+    state.parked = guard_.parked();
+    state.counts = sources_->counts();
+    state.loads_since = loads_since_;
+    state.report = report_;
+    return state;
+  }
 
   void keep() {
     if (scene_.rollback == Scene::Rollback::off) return;
-    kept_.emplace();
-    for (const auto& material : world_->materials) {
-      kept_->particles.push_back(material.particles);
-      kept_->speeds.push_back({material.max_speed, material.wave_speed, material.kinematic_viscosity});
-    }
-    kept_->t = world_->t;
-    kept_->max_speed = world_->max_speed;
-    kept_->max_collider_speed = world_->max_collider_speed;
-    kept_->steps = world_->steps;
-    kept_->parked = guard_.parked();
-    kept_->counts = sources_->counts();
-    kept_->report = report_;
+    kept_ = present();
+    for (const auto& material : world_->materials) kept_->particles.push_back(material.particles);
   }
 
-  void restore() {
-    for (std::size_t m = 0; m < world_->materials.size(); ++m) {
-      auto& material = world_->materials[m];
-      material.particles = kept_->particles[m];
-      material.max_speed = kept_->speeds[m][0];
-      material.wave_speed = kept_->speeds[m][1];
-      material.kinematic_viscosity = kept_->speeds[m][2];
+  CheckpointState saved(const FrameState<Real, dim>& state, const ParticleList<Real, dim>& particles) const {
+    CheckpointState saved = save_state(state, particles, scene_, *world_);
+    saved.counters["frame"] = frame_;
+    saved.counters["halvings"] = halvings_;
+    return saved;
+  }
+
+  CheckpointState present_state() const {
+    CheckpointState state = saved(present(), particles_of(*world_));
+    state.texts["hash"] = fmt::format("{:016x}", hash());
+    if (paused_) {
+      state.numbers["next.dt"] = paused_->next.dt;
+      state.texts["next.limit"] = paused_->next.limit;
+      state.counters["next.material"] = paused_->next.material;
+      state.counters["attempt"] = paused_->attempt;
     }
-    world_->t = kept_->t;
-    world_->max_speed = kept_->max_speed;
-    world_->max_collider_speed = kept_->max_collider_speed;
-    world_->scattered_dt.reset();
-    world_->drained = true;
-    arena_.execute([&] { activate_blocks(*world_); });
-    world_->steps = kept_->steps;
+    return state;
+  }
+
+  Restored read_state(const CheckpointState& saved) const {
+    Restored restored = {{}, counter_of(saved, "frame"), static_cast<int>(counter_of(saved, "halvings"))};
+    arena_.execute([&] { restored.state = load_state<Real, dim>(saved, scene_, *world_); });
+    return restored;
+  }
+
+  Paused read_paused(const CheckpointState& state) const {
+    Paused paused;
+    paused.next.dt = number_of(state, "next.dt");
+    paused.next.limit = text_of(state, "next.limit");
+    paused.next.material = static_cast<int>(counter_of(state, "next.material"));
+    if (paused.next.material >= static_cast<int>(material_names_.size()) || !(paused.next.dt > 0)) {
+      throw Error(ErrorKind::files, "the checkpoint cannot be used: its next step is not one of this scene");
+    }
+    paused.attempt = static_cast<int>(counter_of(state, "attempt"));
+    return paused;
+  }
+
+  void take_back() {
+    arena_.execute([&] { put_back(*kept_, *world_); });
     guard_.restore(kept_->parked);
     sources_->restore(kept_->counts);
+    loads_since_ = kept_->loads_since;
   }
 
   void retry(const ParticleFailure& failure) {
     log_warning(
         fmt::format("{}; taking frame {} back and halving the time step", describe(failure, report_.dt), frame_ + 1));
-    restore();
-    limits_.particle_cfl /= 2;
-    limits_.elastic_cfl /= 2;
-    limits_.max_dt /= 2;
+    take_back();
+    ++halvings_;
+    set_limits();
   }
 
-  std::optional<ParticleFailure> try_frame() {
+  void set_limits() {
+    limits_.particle_cfl = std::ldexp(scene_.limits.particle_cfl, -halvings_);
+    limits_.elastic_cfl = std::ldexp(scene_.limits.elastic_cfl, -halvings_);
+    limits_.max_dt = std::ldexp(scene_.limits.max_dt.value_or(std::numeric_limits<double>::infinity()), -halvings_);
+  }
+
+  /// @param promised the next step, where a paused frame goes on
+  std::optional<ParticleFailure> try_frame(const std::optional<TimeStep>& promised, const Pause& pause) {
     std::optional<ParticleFailure> failure;
-    const double start = world_->t;
-    world_->collider_loads.assign(world_->colliders.size(), {});
-    arena_.execute([&] { failure = try_steps(frame_time(frame_ + 1)); });
-    if (failure) return failure;
+    if (!promised) {
+      loads_since_ = world_->t;
+      world_->collider_loads.assign(world_->colliders.size(), {});
+    }
+    arena_.execute([&] { failure = try_steps(frame_time(frame_ + 1), promised, pause); });
+    if (failure || paused_) return failure;
     arena_.execute([&] { guard_.park_far(*world_); });
     ++frame_;
     report_.frame = frame_;
     report_.time = world_->t;
-    report_.colliders = collider_reports(world_->t - start);
+    report_.colliders = collider_reports(world_->t - loads_since_);
     note_particles();
     return std::nullopt;
   }
@@ -276,15 +361,18 @@ class SimulationOf final : public Simulation {
     return reports;
   }
 
-  std::optional<ParticleFailure> try_steps(double until) {
-    report_ = {};
-    report_.dt = std::numeric_limits<double>::infinity();
-    TimeStep next = choose_step(world_->t, until);
+  std::optional<ParticleFailure> try_steps(double until, const std::optional<TimeStep>& promised, const Pause& pause) {
+    if (!promised) {
+      report_ = {};
+      report_.dt = std::numeric_limits<double>::infinity();
+    }
+    TimeStep next = promised ? *promised : choose_step(world_->t, until);
     while (world_->t < until) {
       const TimeStep taken = next;
-      bool drained = false;
+      bool drained = false, stop = false;
       sources_->set_pins(*world_);
       const StepReport step = step_explicit(*world_, taken.dt, [&] {
+        stop = pause && pause();
         // What is left behind the last step of a frame is round-off.
         const double remaining = until - (world_->t + taken.dt);
         const bool due = sources_->due(*world_, taken.dt);
@@ -292,17 +380,24 @@ class SimulationOf final : public Simulation {
         if (drained) return 0.0;
         next = choose_step(world_->t + taken.dt, until);
         drained = !(next.dt > 0);
-        return next.dt;
+        // To stop drains the state as well, but the next step stays the one that is chosen here: the step after a pause
+        // must be as long as without it.
+        return stop ? 0.0 : next.dt;
       });
       note_step(taken, step.failure.has_value());
       if (step.failure) return step.failure;
-      if (!drained) continue;
-      guard_.park_fast(*world_);
-      // The last step of a frame lands on its time.
-      const bool is_last = until - world_->t < 1e-9 * taken.dt;
-      if (is_last) world_->t = until;
-      sources_->act(*world_);
-      if (!is_last) next = choose_step(world_->t, until);
+      if (drained) {
+        guard_.park_fast(*world_);
+        // The last step of a frame lands on its time.
+        const bool is_last = until - world_->t < 1e-9 * taken.dt;
+        if (is_last) world_->t = until;
+        sources_->act(*world_);
+        if (!is_last) next = choose_step(world_->t, until);
+      }
+      if (stop && world_->t < until) {
+        paused_ = {next, 0};
+        break;
+      }
     }
     return std::nullopt;
   }
@@ -343,8 +438,12 @@ class SimulationOf final : public Simulation {
   TimeStepLimits limits_;
   RunawayGuard<Real, dim> guard_;
   std::vector<std::string> material_names_;
-  std::optional<Kept> kept_;
+  int halvings_ = 0;  ///< of the limits, since frames were taken back
+  std::optional<FrameState<Real, dim>> kept_;
+  std::optional<Paused> paused_;
+  std::string limit_name_;  ///< of a restored next step, which refers to it
   FrameReport report_;
+  double loads_since_ = 0;  ///< s; when the loads of colliders were last set to zero
 };
 
 }  // namespace

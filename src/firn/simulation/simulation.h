@@ -1,6 +1,7 @@
 #pragma once
 
 #include <firn/integrators/time_step.h>
+#include <firn/io/checkpoint.h>
 #include <firn/measure/penetration.h>
 #include <firn/measure/probe.h>
 #include <firn/measure/totals.h>
@@ -10,7 +11,9 @@
 #include <firn/state/snapshot.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,9 +39,12 @@ struct FrameReport {
   std::int64_t parked = 0;  ///< since the start
   int retries = 0;          ///< times that the frame was taken back and computed with smaller steps
   double wall_seconds = 0;
-  std::vector<ColliderReport> colliders = {};  ///< in the order of the scene
+  std::vector<ColliderReport> colliders = {};           ///< in the order of the scene
   std::vector<SourceCount> emitted = {}, removed = {};  ///< by each emitter and each sink
 };
+
+/// Asked after each step; true: stop there.
+using Pause = std::function<bool()>;
 
 /// A scene being simulated, whatever its dimension and precision: the one face of the library that the command line,
 /// the viewer and end-to-end tests use.
@@ -67,7 +73,19 @@ class Simulation {
   /// Steps to the next frame. If a particle fails, the frame is taken back, the limits are halved and it is computed
   /// again; after three tries Error(numerical) tells step, time, particle, its F, J and speed, the likely cause and
   /// what to change. The state is then that of the last good frame (rollback = "memory").
-  virtual FrameReport advance_frame() = 0;
+  FrameReport advance_frame() { return *advance_frame({}); }
+
+  /// The same, unless `pause` (which may be empty) answers true in the middle of the frame: then nothing is returned,
+  /// the state is drained and may be saved, and the next call goes on with the frame, with the same bits.
+  virtual std::optional<FrameReport> advance_frame(const Pause& pause) = 0;
+
+  /// The whole state, at the end of a frame or where advance_frame() has paused.
+  virtual Checkpoint checkpoint() const = 0;
+
+  /// Goes back, or forth, to a checkpoint of this scene, or of one that differs in what `Checkpoint::layout` and the
+  /// materials' columns do not tell. The bits are then those of the simulation that was saved. Error(files) if the
+  /// checkpoint does not fit; the state is then as it was.
+  virtual void restore(const Checkpoint& checkpoint) = 0;
 
   /// The report of the frame that the simulation stands at.
   virtual FrameReport report() const = 0;
