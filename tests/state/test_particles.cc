@@ -24,7 +24,7 @@ Particles<Real, dim> random_particles(std::size_t count, std::int64_t reach, Ran
   for (auto& x : positions) {
     for (int d = 0; d < dim; ++d) x[d] = random.uniform(-static_cast<double>(reach), static_cast<double>(reach));
   }
-  particles.append(positions, 1.0, Kernel::quadratic, {}, 1, 1, 0, 0);
+  particles.append(positions, 1.0, Kernel::quadratic, {}, 1, 0, 0);
   particles.sort_by_block();
   return particles;
 }
@@ -136,7 +136,7 @@ TEST(SortByBlock, NewParticlesLieAsTheyWereAppended) {
   Particles<float, 3> restored({});
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const Vec<double, 3> x = particles.position(p, 1, Kernel::quadratic);
-    restored.append({&x, 1}, 1, Kernel::quadratic, {}, 1, 1, particles.id()[p], 0);
+    restored.append({&x, 1}, 1, Kernel::quadratic, {}, 1, particles.id()[p], 0);
   }
   restored.sort_by_block();
   EXPECT_EQ(ids_of(restored), ids_of(particles));
@@ -182,7 +182,7 @@ TEST(Particles, ACopyIsEqualAndItsOwn) {
 TEST(Particles, ABodyNumberThatDoesNotFitIsRefused) {
   Particles<float, 2> particles({});
   const std::vector<Vec<double, 2>> positions = {{{0, 0}}};
-  EXPECT_THROW(particles.append(positions, 1, Kernel::quadratic, {}, 1, 1, 0, 65536), Error);
+  EXPECT_THROW(particles.append(positions, 1, Kernel::quadratic, {}, 1, 0, 65536), Error);
 }
 
 TEST(CellPosition, KeepsItsPrecisionFarFromTheOrigin) {
@@ -215,9 +215,9 @@ TEST(CellPosition, WrapsPeriodicAxes) {
 }
 
 TEST(Particles, BeginAtRestAndUndeformed) {
-  Particles<float, 2> particles({.history = {{"Jp", "", "", 1.0}, {"alpha", "rad", "", 0.25}}});
+  Particles<float, 2> particles({.history = {{"Jp", "", "", 1.0}, {"alpha", "rad", "", 0.25}}, .density = 16});
   const std::vector<Vec<double, 2>> positions = {{{0.3, -2.7}}, {{5, 5}}};
-  particles.append(positions, 0.5, Kernel::cubic, {}, 2.0, 0.125, 40, 3);
+  particles.append(positions, 0.5, Kernel::cubic, {}, 0.125, 40, 3);
   ASSERT_EQ(particles.size(), 2u);
   EXPECT_FALSE(particles.has(Field::grad_v));
   EXPECT_FALSE(particles.has(Field::acceleration));
@@ -230,7 +230,7 @@ TEST(Particles, BeginAtRestAndUndeformed) {
       EXPECT_EQ(particles.real(Field::strain, e)[p], e == 0 || e == 3 ? 1 : 0);
       EXPECT_EQ(particles.real(Field::affine, e)[p], 0);
     }
-    EXPECT_EQ(particles.real(Field::mass)[p], 2);
+    EXPECT_EQ(particles.mass(p), 2);
     EXPECT_EQ(particles.real(Field::rest_volume)[p], 0.125f);
     EXPECT_EQ(particles.id()[p], 40 + p);
     EXPECT_EQ(particles.body()[p], 3u);
@@ -244,7 +244,7 @@ TEST(Particles, TooFarAwayIsRefusedByName) {
     Particles<double, 3> particles({});
     const std::vector<Vec<double, 3>> positions = {{{0, 0, 0}}, {{0, far, 0}}};
     try {
-      particles.append(positions, 1.0, Kernel::quadratic, {}, 1, 1, 70, 0);
+      particles.append(positions, 1.0, Kernel::quadratic, {}, 1, 70, 0);
       FAIL() << far;
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::usage);

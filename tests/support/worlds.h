@@ -22,8 +22,7 @@ void add_particles(World<Real, dim>& world, std::size_t material, const std::vec
                    double volume_each) {
   auto& set = world.materials[material];
   const auto first_id = static_cast<std::uint32_t>(world.particle_count());
-  set.particles.append(positions, world.grid.dx(), world.grid.kernel(), world.grid.period(),
-                       set.parameters.density * volume_each, volume_each, first_id, 0);
+  set.particles.append(positions, world.grid.dx(), world.grid.kernel(), world.grid.period(), volume_each, first_id, 0);
 }
 
 /// Regular lattice of `per_cell` points per cell and axis with cell centres at dx (i + 1/2), filling cells [low, high).

@@ -137,7 +137,7 @@ double unaccounted(const TransferSettings& settings, bool count_all = true) {
     for (const auto& material : world.materials) {
       for (std::size_t p = 0; p < material.particles.size(); ++p) {
         for (int i = 0; i < dim; ++i) {
-          sum[i] += material.particles.real(Field::mass)[p] * material.particles.real(Field::velocity, i)[p];
+          sum[i] += material.particles.mass(p) * material.particles.real(Field::velocity, i)[p];
         }
       }
     }

@@ -135,8 +135,8 @@ inline constexpr double kTimeStep = 0.008;  // s; the fastest particles move a t
 /// f(name, component count, column(particles, component)) for every column of real numbers.
 template <class Real, int dim, class F>
 void for_each_real_column(const Particles<Real, dim>& particles, const F& f) {
-  for (const Field field : {Field::offset, Field::strain, Field::mass, Field::rest_volume, Field::velocity,
-                            Field::affine, Field::stress, Field::grad_v, Field::acceleration}) {
+  for (const Field field : {Field::offset, Field::strain, Field::rest_volume, Field::velocity, Field::affine,
+                            Field::stress, Field::grad_v, Field::acceleration}) {
     if (!particles.has(field)) continue;
     f(std::string(kFields[static_cast<std::size_t>(field)].name), particles.component_count(field),
       [field](auto& p, int c) { return p.real(field, c); });

@@ -78,7 +78,8 @@ TEST(Determinism, ControlHashSeesEveryBit) {
   auto world = snow_and_jelly<float>({});
   auto& particles = world.materials[0].particles;
   const std::uint64_t before = particles.hash();
-  for (const Field field : {Field::offset, Field::velocity, Field::affine, Field::strain, Field::stress, Field::mass}) {
+  for (const Field field :
+       {Field::offset, Field::velocity, Field::affine, Field::strain, Field::stress, Field::rest_volume}) {
     float& number = particles.real(field)[particles.size() - 1];
     const float kept = number;
     number = std::bit_cast<float>(std::bit_cast<std::uint32_t>(number) ^ 1u);
@@ -91,11 +92,11 @@ TEST(Determinism, ControlHashSeesEveryBit) {
   EXPECT_EQ(particles.hash(), before);
 }
 
-/// Control: the hash of a run sees one bit of one particle's mass, 60 steps later.
+/// Control: the hash of a run sees one bit of one particle's volume, 60 steps later.
 TEST(Determinism, ControlOneBitChangesTheRun) {
   auto world = snow_and_jelly<float>({});
-  float& mass = world.materials[0].particles.real(Field::mass)[100];
-  mass = std::bit_cast<float>(std::bit_cast<std::uint32_t>(mass) ^ 1u);
+  float& volume = world.materials[0].particles.real(Field::rest_volume)[100];
+  volume = std::bit_cast<float>(std::bit_cast<std::uint32_t>(volume) ^ 1u);
   for (int s = 0; s < 20; ++s) step_explicit(world, choose_time_step(world, {}).dt);
   auto untouched = snow_and_jelly<float>({});
   for (int s = 0; s < 20; ++s) step_explicit(untouched, choose_time_step(untouched, {}).dt);

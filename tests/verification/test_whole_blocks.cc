@@ -33,7 +33,7 @@ World<Real, dim> collision(const TransferSettings& settings, const Index<dim>& s
       }
     }
     auto& set = world.materials[m];
-    set.particles.append(points, kDx, settings.kernel, {}, set.parameters.density * 1e-6, 1e-6, 0, 0);
+    set.particles.append(points, kDx, settings.kernel, {}, 1e-6, 0, 0);
     for (std::size_t p = 0; p < points.size(); ++p) {
       Vec<double, dim> v;
       for (int i = 0; i < dim; ++i) v[i] = (m == 0 ? 2 : -2) + random.uniform(-0.5, 0.5);

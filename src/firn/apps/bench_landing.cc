@@ -22,7 +22,7 @@ BenchMotion motion_of(const World<Real, dim>& world) {
   parallel_chunks(particles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     BenchMotion& part = parts[begin / kGrain];
     for (std::size_t p = begin; p < end; ++p) {
-      const double mass = particles.real(Field::mass)[p];
+      const double mass = particles.mass(p);
       for (int d = 0; d < dim; ++d) {
         const double v = particles.real(Field::velocity, d)[p];
         part.kinetic_energy += 0.5 * mass * v * v;

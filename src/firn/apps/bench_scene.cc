@@ -121,8 +121,8 @@ void seed_cube(World<Real, dim>& world, const BenchCase& bench, const BenchStart
       if (d == 0) ++i[0];
     }
     const std::size_t first = particles.size();
-    particles.append(positions, world.grid.dx(), world.grid.kernel(), world.grid.period(),
-                     material.parameters.density * volume, volume, static_cast<std::uint32_t>(first), 0);
+    particles.append(positions, world.grid.dx(), world.grid.kernel(), world.grid.period(), volume,
+                     static_cast<std::uint32_t>(first), 0);
     for (std::size_t p = 0; p < positions.size(); ++p) {
       const double along = positions[p][0], above = positions[p][kBenchUp] - start.height - 0.5 * kCubeSide;
       const double velocity[3] = {-start.rate * above, 0.3 * start.rate * along - start.fall, 0.5 * start.rate * along};
@@ -165,8 +165,7 @@ double run_steps(World<Real, dim>& world, const TimeStepLimits& limits, int step
   for (int step = 0; step < steps; ++step) {
     const bool last = drain && step + 1 == steps;
     const double dt = world.scattered_dt ? *world.scattered_dt : choose_time_step(world, limits).dt;
-    const StepReport report =
-        step_explicit(world, dt, [&] { return last ? 0.0 : choose_time_step(world, limits).dt; });
+    const StepReport report = step_explicit(world, dt, [&] { return last ? 0.0 : choose_time_step(world, limits).dt; });
     if (report.failure) {
       throw Error(
           ErrorKind::numerical,
@@ -185,7 +184,7 @@ Index<dim> cell_of(const World<Real, dim>& world, std::size_t p) {
 #define FIRN_INSTANTIATE(Real, dim)                                                           \
   template World<Real, dim> bench_world<Real, dim>(const BenchCase&);                         \
   template void seed_cube<Real, dim>(World<Real, dim>&, const BenchCase&, const BenchStart&); \
-  template double run_steps<Real, dim>(World<Real, dim>&, const TimeStepLimits&, int, bool);        \
+  template double run_steps<Real, dim>(World<Real, dim>&, const TimeStepLimits&, int, bool);  \
   template Index<dim> cell_of<Real, dim>(const World<Real, dim>&, std::size_t);
 FIRN_INSTANTIATE(float, 2)
 FIRN_INSTANTIATE(float, 3)

@@ -85,11 +85,10 @@ class StateReader {
 
 /// Columns that a step reads and that do not follow from others.
 template <int dim>
-constexpr std::array<std::pair<Field, int>, 6> kStateFields = {{{Field::offset, dim},
+constexpr std::array<std::pair<Field, int>, 5> kStateFields = {{{Field::offset, dim},
                                                                 {Field::velocity, dim},
                                                                 {Field::affine, dim* dim},
                                                                 {Field::strain, dim* dim},
-                                                                {Field::mass, 1},
                                                                 {Field::rest_volume, 1}}};
 
 /// Calls visit(column) for each column but the cells; column[p] reads and writes particle p.
@@ -208,7 +207,7 @@ void read_bench_state(const std::filesystem::path& path, World<Real, dim>& world
     for (std::size_t i = 0; i < count; ++i) {
       for (int d = 0; d < dim; ++d) positions[i][d] = dx * (cells[i * dim + static_cast<std::size_t>(d)] + inside);
     }
-    particles.append(positions, dx, world.grid.kernel(), world.grid.period(), 0, 0, 0, 0);
+    particles.append(positions, dx, world.grid.kernel(), world.grid.period(), 0, 0, 0);
     for_each_column<dim>(particles, [&](auto column) {
       std::vector<ColumnValue<decltype(column)>> values(count);
       require(reader.bytes(values.data(), count * sizeof(values[0])));

@@ -18,7 +18,7 @@
 namespace firn {
 
 /// Of the format and of what the simulation makes of equal settings: raise it when either changes.
-inline constexpr std::uint32_t kBenchStateVersion = 1;
+inline constexpr std::uint32_t kBenchStateVersion = 2;
 
 /// Writes beside the place and renames. Error(files).
 template <class Real, int dim>

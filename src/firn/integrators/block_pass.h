@@ -113,7 +113,7 @@ class ColliderConstraint final : public ParticleConstraint<Real, dim> {
     for (std::uint32_t lane = 0; lane < count; ++lane) {
       MovingParticle<dim> particle = {
           position_in_block<Real, dim>(particles, first + lane, origin_, grid_.dx(), grid_.kernel()),
-          static_cast<double>(particles.mass[first + lane]),
+          static_cast<double>(particles.mass(first + lane)),
           {},
           {}};
       for (int i = 0; i < dim; ++i) {

@@ -103,10 +103,8 @@ void move(World<Real, dim>& world, std::size_t m, const std::vector<StepCollider
   const ParticleContact<Real, dim> contact(world, dt, all);
   material.max_speed = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
-    MovingParticle<dim> particle = {particles.position(p, dx, world.grid.kernel()),
-                                    static_cast<double>(particles.real(Field::mass)[p]),
-                                    {},
-                                    moves_with[p]};
+    MovingParticle<dim> particle = {
+        particles.position(p, dx, world.grid.kernel()), particles.mass(p), {}, moves_with[p]};
     Vec<double, dim>&v = particle.v, &u = particle.u;
     for (int i = 0; i < dim; ++i) v[i] = static_cast<double>(particles.real(Field::velocity, i)[p]);
     contact.apply(particle, world.collider_loads);

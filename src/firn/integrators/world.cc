@@ -8,6 +8,7 @@ namespace firn {
 template <class Real, int dim>
 MaterialSet<Real, dim>& World<Real, dim>::add_material(std::string name, int model, const ModelParameters& parameters) {
   typename Particles<Real, dim>::Options options;
+  options.density = parameters.density;
   options.keeps_velocity = transfer.flip > 0;
   options.separate_grad_v = !affine_is_gradient(transfer.kernel, transfer.form);
   options.acceleration = static_cast<bool>(body_force);

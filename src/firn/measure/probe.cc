@@ -98,7 +98,7 @@ void add_to_probes(std::span<const Vec<double, dim>> points, const Particles<Rea
     ProbeSums& sum = sums[i];
     ParametersOfOne own(parameters);
     neighbourhood.for_each(points[i], [&](std::size_t p, double weight) {
-      const double mass = weight * particles.real(Field::mass)[p];
+      const double mass = weight * particles.mass(p);
       sum.mass += mass;
       for (int d = 0; d < dim; ++d) sum.momentum[d] += mass * particles.real(Field::velocity, d)[p];
       const double rest_volume = weight * particles.real(Field::rest_volume)[p];

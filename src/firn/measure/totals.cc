@@ -34,7 +34,7 @@ Vec3d affine_spin(const Particles<Real, dim>& particles, std::size_t p, const Me
 template <class Real, int dim>
 Totals totals_of(const Particles<Real, dim>& particles, std::size_t p, int model, const ModelParameters& shared,
                  ParametersOfOne& own, const MeasureContext<dim>& context) {
-  const double mass = particles.real(Field::mass)[p];
+  const double mass = particles.mass(p);
   const Vec<double, dim> at = particles.position(p, context.dx, context.kernel);
   Vec3d x = {}, v = {};
   double height_work = 0;

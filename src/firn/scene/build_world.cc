@@ -181,8 +181,7 @@ BuiltWorld<Real, dim> build_world(const Scene& scene) {
       if (material.name != body.material) continue;
       const std::size_t first = material.particles.size();
       material.particles.append(samples.positions, plan.cell_size, world.transfer.kernel, world.grid.period(),
-                                material.parameters.density * samples.volume_per_sample, samples.volume_per_sample,
-                                next_id, static_cast<std::uint32_t>(b));
+                                samples.volume_per_sample, next_id, static_cast<std::uint32_t>(b));
       set_initial_velocity(material.particles, first, body, samples.positions, plan.cell_size,
                            world.transfer.affine != 0);
       vary_parameters<Real, dim>(scene, *scene.find_material(body.material), body,

@@ -27,7 +27,7 @@ const T& entry(const std::map<std::string, T>& entries, std::string_view name) {
 /// columns of a const Particles are read only.
 template <class Set, class Body>
 void for_each_column(Set& particles, const Body& body) {
-  using Real = std::remove_cvref_t<decltype(particles.real(Field::mass)[0])>;
+  using Real = std::remove_cvref_t<decltype(particles.real(Field::rest_volume)[0])>;
   for (int f = 0; f < kFieldCount; ++f) {
     const auto field = static_cast<Field>(f);
     const char* name = kFields[static_cast<std::size_t>(f)].name;
@@ -150,12 +150,13 @@ Particles<Real, dim> load_particles(const CheckpointMaterial& saved, const Mater
   const Particles<Real, dim>& like = material.particles;
   typename Particles<Real, dim>::Options options;
   options.keeps_velocity = keeps_velocity;
+  options.density = like.density();
   options.separate_grad_v = like.has(Field::grad_v);
   options.acceleration = like.has(Field::acceleration);
   for (int h = 0; h < like.history_count(); ++h) options.history.push_back(like.history_spec(h));
   Particles<Real, dim> particles(options);
   // At any place: the columns say where they are.
-  particles.append(std::vector<Vec<double, dim>>(saved.particles), 1, Kernel::linear, {}, 0, 0, 0, 0);
+  particles.append(std::vector<Vec<double, dim>>(saved.particles), 1, Kernel::linear, {}, 0, 0, 0);
   std::size_t at = 0;
   for_each_column(particles, [&]<class T>(const std::string& name, std::size_t components, T, const auto& column_of) {
     const std::vector<T>& values = values_of<T>(saved, at++);

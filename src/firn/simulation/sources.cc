@@ -294,9 +294,8 @@ void Sources<Real, dim>::append(MaterialSet<Real, dim>& material, const World<Re
   std::vector<Vec<double, dim>> positions;
   for (const Emitted<dim>& particle : particles) positions.push_back(particle.x);
   const std::size_t first = material.particles.size();
-  material.particles.append(positions, world.grid.dx(), world.transfer.kernel, world.grid.period(),
-                            material.parameters.density * particle_volume_, particle_volume_, first_id,
-                            static_cast<std::uint32_t>(emitter.body));
+  material.particles.append(positions, world.grid.dx(), world.transfer.kernel, world.grid.period(), particle_volume_,
+                            first_id, static_cast<std::uint32_t>(emitter.body));
   for (int d = 0; d < dim; ++d) {
     const auto velocity = material.particles.real(Field::velocity, d);
     for (std::size_t i = 0; i < particles.size(); ++i) velocity[first + i] = static_cast<Real>(particles[i].v[d]);
@@ -332,7 +331,7 @@ bool Sources<Real, dim>::remove(World<Real, dim>& world, std::size_t s) {
       const auto x = material.particles.position(p, world.grid.dx(), world.grid.kernel());
       if (!region.contains(to_frame<dim>(pose, x))) return;
       places.push_back(p);
-      count.mass += static_cast<double>(material.particles.real(Field::mass)[p]);
+      count.mass += material.particles.mass(p);
     });
     count.particles += static_cast<std::int64_t>(places.size());
     if (!places.empty()) material.particles.remove(places);

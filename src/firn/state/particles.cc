@@ -29,6 +29,7 @@ Particles<Real, dim>::Particles(const Options& options)
     : layout_(ParticleLayout::of(dim, static_cast<int>(sizeof(Real)),
                                  {options.keeps_velocity, options.separate_grad_v, options.acceleration,
                                   static_cast<int>(options.history.size())})),
+      density_(options.density),
       history_(options.history),
       pool_(std::make_unique<ChunkPool>(chunk_bytes(layout_))),
       first_(1, 0) {}
@@ -36,6 +37,7 @@ Particles<Real, dim>::Particles(const Options& options)
 template <class Real, int dim>
 Particles<Real, dim>::Particles(const Particles& other)
     : layout_(other.layout_),
+      density_(other.density_),
       history_(other.history_),
       pool_(std::make_unique<ChunkPool>(chunk_bytes(layout_))),
       first_(other.first_),
@@ -133,7 +135,7 @@ Vec<double, dim> Particles<Real, dim>::position(std::size_t p, double dx, Kernel
 
 template <class Real, int dim>
 void Particles<Real, dim>::append(std::span<const Vec<double, dim>> positions, double dx, Kernel kernel,
-                                  const Period<dim>& period, double mass, double rest_volume, std::uint32_t first_id,
+                                  const Period<dim>& period, double rest_volume, std::uint32_t first_id,
                                   std::uint32_t body_index) {
   if (body_index > std::numeric_limits<std::uint16_t>::max()) {
     throw Error(ErrorKind::usage,
@@ -158,7 +160,6 @@ void Particles<Real, dim>::append(std::span<const Vec<double, dim>> positions, d
       *columns.offset[d] = place.offset[d];
       *columns.strain[d * dim + d] = Real(1);
     }
-    *columns.mass = static_cast<Real>(mass);
     *columns.rest_volume = static_cast<Real>(rest_volume);
     *columns.id = first_id + static_cast<std::uint32_t>(n);
     *columns.body = static_cast<std::uint16_t>(body_index);

@@ -79,6 +79,11 @@ class Particles {
   Column<Real> history(int h) { return {*this, layout_.history + h * layout_.real_bytes}; }
   Column<const Real> history(int h) const { return {*this, layout_.history + h * layout_.real_bytes}; }
 
+  /// rho_0, kg/m^3 (kg/m^2 in 2D)
+  double density() const { return density_; }
+  /// Mass of particle p, kg (kg/m in 2D): the density times its undeformed volume. A column of its own would be 4 of
+  /// 136 bytes for a number that follows from another.
+  double mass(std::size_t p) const { return density_ * static_cast<double>(real(Field::rest_volume)[p]); }
   /// Key of particle p's cell.
   std::uint64_t cell(std::size_t p) const;
   /// Moves particle p to another cell; call sort_by_block() afterwards. Ascending p.
@@ -110,11 +115,11 @@ class Particles {
   /// Particles of block b from `first` on as plain arrays, up to the end of first's chunk.
   ParticleColumns<Real, dim> columns(std::size_t b, std::size_t first) {
     const ParticleStorage chunk = blocks_[b].chunk(first);
-    return columns_of<Real, dim>(layout_, chunk, first % kChunk, chunk, first % kChunk);
+    return with_density(columns_of<Real, dim>(layout_, chunk, first % kChunk, chunk, first % kChunk));
   }
   /// The same, with the fields that do not survive a fused step in `passing`, from its first element on.
   ParticleColumns<Real, dim> columns(std::size_t b, std::size_t first, ParticleStorage passing) {
-    return columns_of<Real, dim>(layout_, blocks_[b].chunk(first), first % kChunk, passing, 0);
+    return with_density(columns_of<Real, dim>(layout_, blocks_[b].chunk(first), first % kChunk, passing, 0));
   }
   /// body(columns, first, count) for the chunks of block b.
   template <class Body>
@@ -176,12 +181,17 @@ class Particles {
     const int width = field == Field::body ? 2 : field == Field::id ? 4 : layout_.real_bytes;
     return layout_.field[static_cast<std::size_t>(field)] + c * width;
   }
+  ParticleColumns<Real, dim> with_density(ParticleColumns<Real, dim> columns) const {
+    columns.density = static_cast<Real>(density_);
+    return columns;
+  }
   void create_blocks(const std::vector<std::uint64_t>& keys);
   void receive_all(Arrivals arrivals);
   void place_new_particles();
   void index_blocks();
 
   ParticleLayout layout_;
+  double density_;
   std::vector<HistorySpec> history_;
   std::unique_ptr<ChunkPool> pool_;
   std::vector<ParticleBlock> blocks_;      ///< ascending by key

@@ -75,7 +75,7 @@ template <int dim>
 template <class Real>
 ParticleLoad<dim>::ParticleLoad(const ParticleColumns<Real, dim>& particles, std::uint32_t p, double dx, double dt,
                                 const TransferSettings& settings)
-    : form_(settings.form), mass_(static_cast<double>(particles.mass[p])) {
+    : form_(settings.form), mass_(static_cast<double>(particles.mass(p))) {
   const double inverse_D = apic_inverse_D(settings.kernel) / (dx * dx);
   const double scale = -dt * static_cast<double>(particles.rest_volume[p]) * (form_ == Form::mls ? inverse_D : 1);
   for (int i = 0; i < dim; ++i) {

@@ -90,7 +90,7 @@ template <class Real, int dim>
 void reference_scatter(const Particles<Real, dim>& particles, double dx, double dt, const TransferSettings& settings,
                        const Period<dim>& period, const HiddenBehind<dim>& behind, ReferenceGrid<dim>& grid) {
   for (std::size_t p = 0; p < particles.size(); ++p) {
-    const double m = static_cast<double>(particles.real(Field::mass)[p]);
+    const double m = particles.mass(p);
     const double V0 = static_cast<double>(particles.real(Field::rest_volume)[p]);
     const Vec<double, dim> v = vector(particles, Field::velocity, p);
     const Vec<double, dim> b =

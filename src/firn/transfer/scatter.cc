@@ -78,8 +78,8 @@ HWY_INLINE void fill_batch(const ParticleColumns<Real, dim>& particles, std::uin
                            ScatterBatch<kernel, form, flip, Real, dim>& batch) {
   using L = Lanes<Real>;
   fill_weights(particles, p, batch);
-  const L mass = load_lanes(particles.mass + p);
   const L volume = load_lanes(particles.rest_volume + p);
+  const L mass = L(particles.density) * volume;
   Mat<L, dim> tau;
   for (int i = 0; i < dim; ++i) {
     for (int j = 0; j <= i; ++j) {
