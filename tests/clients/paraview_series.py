@@ -56,6 +56,24 @@ def check_frames(checks, run):
     return reader
 
 
+def check_exports(checks, folder):
+    """What `firn export` and `firn surface` write for ParaView: a .pvd with its times, PLY and OBJ."""
+    reader = simple.OpenDataFile(os.path.join(folder, "paraview", "particles.pvd"))
+    reader.UpdatePipelineInformation()
+    checks.near(list(reader.TimestepValues), [l_time(frame) for frame in range(1, L_FRAMES + 1)], 1e-12, "times of the .pvd")
+    for frame in range(1, L_FRAMES + 1):
+        data, points, arrays = arrays_of(reader, l_time(frame))
+        checks.equal(data.GetNumberOfCells() > 0, True, f".pvd, frame {frame}: has cells, without which nothing is drawn")
+        with h5py.File(os.path.join(folder, "l_shape", "particles", f"particles.{frame:04}.hdf")) as file:
+            stored = {name: column[:] for name, column in file["VTKHDF/PointData"].items()}
+            place = file["VTKHDF/Points"][:]
+        different = [name for name in stored if name not in arrays or not numpy.array_equal(arrays[name], stored[name])]
+        checks.equal((different, numpy.array_equal(points, place)), ([], True), f".pvd, frame {frame}: columns that differ, positions equal")
+    for name, tolerance in (("particles.0002.ply", 0.002), ("surface/surface.0002.ply", 0.6 * L_SPACING), ("surface/surface.0002.obj", 0.6 * L_SPACING)):
+        source = simple.OpenDataFile(os.path.join(folder, "paraview", name))
+        checks.l_lies_right(arrays_of(source, 0)[1], 2, "y", tolerance, name)
+
+
 def check_tap(checks, run):
     """Particles that come out of a tap: their number changes, and the first frame has none."""
     reader = firn_points.open_series(os.path.join(run, "particles", "particles.hdf.series"))
@@ -126,6 +144,7 @@ def main():
     folder, picture = sys.argv[1], sys.argv[2]
     checks = Checks("paraview")
     reader = check_frames(checks, os.path.join(folder, "l_shape"))
+    check_exports(checks, folder)
     check_tap(checks, os.path.join(folder, "tap"))
     check_macro(checks, reader, os.path.join(folder, "l_shape"), picture)
     checks.finish()
