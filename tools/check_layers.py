@@ -38,7 +38,7 @@ LIBRARY_OWNERS = {
     "toml++/": ["scene"],
     "hdf5": ["io"],
     "embree": ["render"],
-    "openvdb/": ["io"],
+    "openvdb/": ["io", "surface"],
     "png.h": ["io", "render"],
     "stb/": ["render"],
     "muParser": ["core"],

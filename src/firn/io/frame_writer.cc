@@ -128,6 +128,7 @@ void write_firn_group(hid_t file, const Snapshot& snapshot, const FrameMetadata&
   hdf5::write_attribute(group, "firn_version", metadata.firn_version);
   hdf5::write_attribute(group, "scene_hash", metadata.scene_hash);
   hdf5::write_attribute(group, "precision", metadata.precision);
+  hdf5::write_attribute(group, "up", metadata.up);
   hdf5::write_attribute(group, "frame", metadata.frame);
   hdf5::write_attribute(group, "time", snapshot.time);
   hdf5::write_attribute(group, "dimension", std::int64_t(snapshot.dimension));
