@@ -3,7 +3,7 @@
 # Does nothing, and needs no privileges, when all of them are present.
 #
 #   tools/install_dependencies.sh            what `make build` and `make test` need
-#   tools/install_dependencies.sh clients    and what `make test-clients` needs besides: 0.3 GB of downloads, 1.6 GB of disk
+#   tools/install_dependencies.sh clients    and what `make test-clients` needs besides: 0.3 GB of downloads, 1.7 GB of disk
 set -euo pipefail
 
 packages=(
@@ -16,7 +16,7 @@ packages=(
 
 for group in "$@"; do
   case "$group" in
-    clients) packages+=(paraview python3-paraview blender python3-meshio python3-numpy python3-venv) ;;
+    clients) packages+=(paraview python3-paraview blender python3-meshio python3-openvdb python3-numpy python3-venv) ;;
     *) echo "firn: no group of packages is called $group; there is clients" >&2; exit 2 ;;
   esac
 done

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Exported files by readers that know nothing of Firn: plain_readers.py FILES
 
-meshio reads PLY and OBJ, numpy CSV, h5py the frames that they came from. Every number is compared, and in every file the
+meshio reads PLY and OBJ, pyopenvdb volumes, numpy CSV, h5py the frames that they came from. Every number is compared, and in every file the
 L must lie where the format or the client has it: Blender z up, Houdini y up, ParaView and CSV as in the scene (y), OBJ
 always y up.
 """
@@ -13,6 +13,7 @@ import sys
 import h5py
 import meshio
 import numpy
+import pyopenvdb
 from checks import JELLY_COLOR, L_FRAMES, L_SPACING, L_VELOCITY, Checks, l_time, to_up
 
 UPS = {"blender": "z", "houdini": "y", "paraview": "y"}
@@ -53,6 +54,32 @@ def check_surfaces(checks, files):
                     checks.near(velocity.mean(axis=0), to_up(L_VELOCITY, up), 0.01, f"{text}: mean velocity")
 
 
+def voxels(grid, wanted):
+    """Places of the voxels whose value fulfils a condition, and their values; of tiles the corners."""
+    places, values = [], []
+    for item in grid.iterOnValues():
+        if wanted(item.value):
+            for index in {item.min, item.max}:
+                places.append(grid.transform.indexToWorld(index))
+                values.append(item.value)
+    return numpy.array(places), numpy.array(values)
+
+
+def check_volumes(checks, files):
+    cases = [("volume", "density", lambda value: value > 0.5), ("surface/surface", "surface", lambda value: value < 0)]
+    for client, up in UPS.items():
+        vector = "velocity" if client == "blender" else "v"
+        for name, main, inside in cases:
+            for frame in range(1, L_FRAMES + 1):
+                path = files / client / f"{name}.{frame:04}.vdb"
+                text = f"{main} for {client}, frame {frame}"
+                grids = {grid.name: grid for grid in pyopenvdb.readAll(str(path))[0]}
+                if checks.equal(sorted(grids), sorted([main, vector]), f"{text}: grids"):
+                    checks.l_lies_right(voxels(grids[main], inside)[0], frame, up, 2 * L_SPACING, text)
+                    velocities = voxels(grids[vector], lambda value: numpy.linalg.norm(value) > 0.1)[1]
+                    checks.near(velocities.mean(axis=0), to_up(L_VELOCITY, up), 0.02, f"{text}: mean velocity")
+
+
 def check_csv(checks, files):
     for frame in range(1, L_FRAMES + 1):
         path = files / "plain" / f"particles.{frame:04}.csv"
@@ -77,6 +104,7 @@ def main():
     checks = Checks("readers")
     check_points(checks, files)
     check_surfaces(checks, files)
+    check_volumes(checks, files)
     check_csv(checks, files)
     check_descriptions(checks, files)
     checks.finish()

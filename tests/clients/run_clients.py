@@ -4,7 +4,7 @@
     run_clients.py --firn build/firn [--folder F] [--usd-python P] [CHECK...]
 
 files     runs the two small scenes of this folder and exports them in every way; the others need its files
-readers   meshio and plain text: every point and mesh format, and where the L lies in each
+readers   meshio, OpenVDB and plain text: every format of points, meshes and volumes, and where the L lies in each
 paraview  the series of frames, exported files and the macro, in pvbatch on a display of Xvfb
 blender   the add-on, Blender's own importers, volumes and a picture by Cycles, in blender -b
 usd       the points of tools/usd/firn_to_usd.py, by the rules of usdchecker
@@ -98,8 +98,8 @@ def make_files(options):
 
 
 def check_readers(options):
-    if not has_modules(SYSTEM_PYTHON, "meshio", "numpy"):
-        raise Missing("python3-meshio")
+    if not has_modules(SYSTEM_PYTHON, "meshio", "pyopenvdb", "h5py"):
+        raise Missing("python3-meshio, python3-openvdb or python3-h5py")
     return call([SYSTEM_PYTHON, HERE / "plain_readers.py", options.folder])
 
 
