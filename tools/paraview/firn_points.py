@@ -15,6 +15,7 @@ import os
 import re
 import sys
 
+import numpy
 from paraview import simple
 
 # Colours of materials by preset or model, linear RGB: those of `firn render`.
@@ -144,7 +145,7 @@ def show(reader, view, color="material"):
     else:
         color_by_column(display, view, columns, color)
     display.SetScalarBarVisibility(view, True)
-    look_at(balls, view, up)
+    look_at(balls, view, up, radius)
     balls.UpdatePipeline(view.ViewTime)
     if balls.GetDataInformation().GetNumberOfPoints() > 0:
         display.RescaleTransferFunctionToDataRange(False, True)
@@ -152,19 +153,26 @@ def show(reader, view, color="material"):
     return balls, display
 
 
-def look_at(source, view, up):
-    """The run's own axis upwards, seen from the front and a little from above."""
+def look_at(source, view, up, radius):
+    """The run's own axis upwards, seen from the front and a little from above, as near as all of it fits in."""
     bounds = source.GetDataInformation().GetBounds()
     if bounds[0] > bounds[1]:  # no particles yet
         return
-    center = [(bounds[2 * axis] + bounds[2 * axis + 1]) / 2 for axis in range(3)]
-    away = max(bounds[2 * axis + 1] - bounds[2 * axis] for axis in range(3)) * 3
-    flat = bounds[5] - bounds[4] == 0  # two dimensions
-    front, upward = ((0, 0, 1), (0, 1, 0)) if up == "y" else ((0, -1, 0), (0, 0, 1))
-    view.CameraFocalPoint = center
-    view.CameraPosition = [center[k] + away * (front[k] + (0 if flat else 0.3 * upward[k] + (0.35 if k == 0 else 0))) for k in range(3)]
+    low, high = (numpy.array(bounds[side::2]) for side in (0, 1))
+    upward = numpy.array((0.0, 1.0, 0.0) if up == "y" else (0.0, 0.0, 1.0))
+    front = numpy.array((0.0, 0.0, 1.0) if up == "y" else (0.0, -1.0, 0.0))
+    toward = front if (low == high).any() else front + 0.3 * upward + (0.35, 0, 0)  # two dimensions: straight on
+    toward = toward / numpy.linalg.norm(toward)
+    right = numpy.cross(upward, toward) / numpy.linalg.norm(numpy.cross(upward, toward))
+    corners = numpy.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+    offsets = corners - (low + high) / 2
+    slope = 0.9 * math.tan(math.radians(view.CameraViewAngle) / 2)  # a tenth is left as a margin
+    wide = slope * view.ViewSize[0] / view.ViewSize[1]
+    tall = (numpy.abs(offsets @ numpy.cross(toward, right)) + radius) / slope
+    away = (numpy.maximum(tall, (numpy.abs(offsets @ right) + radius) / wide) + offsets @ toward).max()
+    view.CameraFocalPoint = (low + high) / 2
+    view.CameraPosition = (low + high) / 2 + away * toward
     view.CameraViewUp = upward
-    simple.ResetCamera(view)
 
 
 def scene_time(reader, frame):
@@ -179,7 +187,10 @@ def scene_time(reader, frame):
 def open_series(path):
     if not os.path.exists(path):
         raise Refusal(f"{path}: no such file")
-    reader = simple.OpenDataFile(os.path.abspath(path))
+    try:
+        reader = simple.OpenDataFile(os.path.abspath(path))
+    except RuntimeError:
+        reader = None
     if reader is None:
         raise Refusal(f"{path}: ParaView does not know such files; give particles/particles.hdf.series of a run")
     reader.UpdatePipelineInformation()
