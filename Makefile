@@ -3,7 +3,7 @@ BUILD ?= build
 JOBS  ?= $(shell nproc)
 SCENE ?= scenes/snow_cube.toml
 
-.PHONY: all demo test verify build sanitize bench gallery format tidy dependencies clean
+.PHONY: all demo test test-clients verify build sanitize bench gallery format tidy dependencies clean
 
 all: build
 
@@ -12,11 +12,18 @@ demo: build ## run the main job: mesh -> snow -> frames, pictures and a film
 
 test: build ## build everything and pass the tests
 	cmake --build $(BUILD) --parallel $(JOBS) --target firn_tests
-	ctest --test-dir $(BUILD) --output-on-failure --no-tests=error --parallel $(JOBS)
+	ctest --test-dir $(BUILD) --output-on-failure --no-tests=error --parallel $(JOBS) -LE clients
 
 build: dependencies ## configure and build the library and the command line tool
 	cmake --preset release -B $(BUILD)
 	cmake --build $(BUILD) --parallel $(JOBS)
+
+test-clients: dependencies ## open what Firn writes in ParaView, Blender, OpenUSD and others; installs them (docs/clients.md)
+	@tools/install_dependencies.sh clients
+	cmake --preset release -B $(BUILD)
+	cmake --build $(BUILD) --parallel $(JOBS) --target firn
+	tools/make_usd_python.sh $(BUILD)/usd-python
+	FIRN_REQUIRE_CLIENTS=1 ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -L clients
 
 sanitize: dependencies ## the tests under AddressSanitizer and UndefinedBehaviorSanitizer, on two SIMD targets
 	cmake --preset sanitize -B $(BUILD)-sanitize

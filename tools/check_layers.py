@@ -38,7 +38,7 @@ LIBRARY_OWNERS = {
     "toml++/": ["scene"],
     "hdf5": ["io"],
     "embree": ["render"],
-    "openvdb/": ["io"],
+    "openvdb/": ["io", "surface"],
     "png.h": ["io", "render"],
     "stb/": ["render"],
     "muParser": ["core"],
@@ -50,6 +50,7 @@ LIBRARY_OWNERS = {
 
 INTRINSICS_ALLOWED = ["core", "transfer"]
 MAX_LINES = 500
+UNSPLIT = {"tools/blender/import_firn.py"}  # Blender installs an add-on of one file with one choice
 SOURCE_SUFFIXES = {".h", ".cc", ".inc"}
 TEXT_SUFFIXES = SOURCE_SUFFIXES | {".py", ".sh", ".md", ".txt", ".cmake", ".toml", ".json", ".yml", ""}
 TEXT_FOLDERS = ["src", "tests", "tools", "docs", "cmake", "scenes", "bench", ".ci"]
@@ -211,7 +212,7 @@ class Checker:
             for number, line in enumerate(lines, 1):
                 if match := MACHINE_PATH.search(line):
                     self.report(path, number, f"path of one machine: {match[0]}...")
-            if path.suffix in SOURCE_SUFFIXES | {".py"} and len(lines) > MAX_LINES:
+            if path.suffix in SOURCE_SUFFIXES | {".py"} and len(lines) > MAX_LINES and path.relative_to(self.root).as_posix() not in UNSPLIT:
                 self.report(path, MAX_LINES + 1, f"{len(lines)} lines; more than {MAX_LINES} call for a split")
 
 

@@ -1,6 +1,9 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that Firn builds and tests with; docs/dependencies.md says why each is here.
 # Does nothing, and needs no privileges, when all of them are present.
+#
+#   tools/install_dependencies.sh            what `make build` and `make test` need
+#   tools/install_dependencies.sh clients    and what `make test-clients` needs besides: 0.3 GB of downloads, 1.7 GB of disk
 set -euo pipefail
 
 packages=(
@@ -10,6 +13,13 @@ packages=(
   libimgui-dev libglfw3-dev libepoxy-dev libgl1-mesa-dri libx11-dev xvfb
   libgtest-dev python3 python3-h5py
 )
+
+for group in "$@"; do
+  case "$group" in
+    clients) packages+=(paraview python3-paraview blender python3-meshio python3-openvdb python3-numpy python3-venv) ;;
+    *) echo "firn: no group of packages is called $group; there is clients" >&2; exit 2 ;;
+  esac
+done
 
 missing=()
 for package in "${packages[@]}"; do
@@ -27,5 +37,5 @@ if [ "$(id -u)" -ne 0 ]; then
   as_root=(sudo)
 fi
 echo "firn: installing ${missing[*]}"
-"${as_root[@]}" apt-get update -qq
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
+"${as_root[@]}" apt-get -o Acquire::Retries=3 update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o Acquire::Retries=3 install -y -qq --no-install-recommends "${missing[@]}"

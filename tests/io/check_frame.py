@@ -25,6 +25,10 @@ def main(path, count):
         assert grid["Offsets"].dtype == np.int64 and list(grid["Offsets"]) == [0, count, total]
         assert grid["Types"].dtype == np.uint8 and list(grid["Types"]) == [2, 2]
 
+        told = {name: grid["FieldData"][name] for name in ("TimeValue", "particle_spacing", "dimension")}
+        assert all(array.shape == (1,) for array in told.values())
+        assert told["TimeValue"][0] == 0.125 and told["dimension"][0] == 3 and told["particle_spacing"][0] == 0.01
+
         points = grid["Points"]
         assert points.dtype == np.float32 and points.shape == (total, 3)
         assert np.array_equal(points, index[:, None] + 0.25 * np.arange(3))

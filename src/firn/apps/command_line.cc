@@ -45,6 +45,9 @@ void add_commands(CLI::App& program) {
   add_check(program);
   add_view(program);
   add_render(program);
+  add_info(program);
+  add_export(program);
+  add_surface(program);
   add_sample(program);
   add_explain(program);
   add_materials(program);

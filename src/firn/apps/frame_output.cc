@@ -22,6 +22,7 @@ FrameMetadata metadata_of(const Scene& scene) {
   metadata.precision = scene.precision == Scene::Precision::single ? "single" : "double";
   metadata.scene_hash = scene_hash(scene);
   metadata.firn_version = FIRN_VERSION;
+  metadata.up.assign(1, scene.up == Scene::Up::y ? 'y' : 'z');
   return metadata;
 }
 

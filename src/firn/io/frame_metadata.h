@@ -15,6 +15,7 @@ struct FrameMetadata {
   std::string precision;     ///< "single" or "double": of the simulation
   std::string scene_hash;    ///< of the resolved scene
   std::string firn_version;  ///< of the program that computed the frame
+  std::string up = "y";      ///< axis that points up: "y" or "z"; "" in frames that do not tell
 };
 
 }  // namespace firn

@@ -111,6 +111,7 @@ Snapshot read_open_file(hid_t file, FrameMetadata* metadata) {
     metadata->precision = hdf5::read_string_attribute(group, "precision");
     metadata->scene_hash = hdf5::read_string_attribute(group, "scene_hash");
     metadata->firn_version = hdf5::read_string_attribute(group, "firn_version");
+    metadata->up = H5Aexists(group, "up") > 0 ? hdf5::read_string_attribute(group, "up") : "";
   }
   return snapshot;
 }

@@ -14,10 +14,9 @@ std::string frame_file_name(std::int64_t frame);
 ///
 /// Group /VTKHDF holds the snapshot in the UnstructuredGrid 1.0 layout that ParaView reads: one poly-vertex cell per
 /// material that has particles, and one dataset of PointData per column ("position" becomes Points). Vectors are N x 3,
-/// matrices N x 9 row-major, types as in the snapshot. Group /Firn holds units, help, materials, bodies and the
-/// metadata. Every dataset has Fletcher32 checksums, and the file ends
-/// with a hash of all its bytes. Equal snapshots give equal bytes. A snapshot without particles is
-/// a legal frame.
+/// matrices N x 9 row-major, types as in the snapshot; FieldData holds TimeValue, particle_spacing and dimension. Group
+/// /Firn holds units, help, materials, bodies and the metadata. Every dataset has Fletcher32 checksums, and the file
+/// ends with a hash of all its bytes. Equal snapshots give equal bytes. A snapshot without particles is a legal frame.
 ///
 /// Throws Error (files) with the system's reason, and Error (usage) if a column does not have the size of the snapshot
 /// or "position" is not first.
