@@ -1,6 +1,7 @@
 #include <firn/apps/commands.h>
 #include <firn/core/error.h>
 #include <firn/core/log.h>
+#include <firn/scene/value_text.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -11,7 +12,8 @@ namespace {
 constexpr int kInterrupted = 130, kUnexpected = 1;
 
 int report(const char* message, int exit_code) {
-  std::fprintf(stderr, "firn: %s\n", message);
+  // Names of files and objects may hold line ends; a message is one line.
+  std::fprintf(stderr, "firn: %s\n", firn::one_line(message).c_str());
   return exit_code;
 }
 
@@ -20,7 +22,7 @@ int report(const char* message, int exit_code) {
 int main(int argc, char** argv) {
   using namespace firn;
   set_log_sink([](LogLevel level, const std::string& line) {
-    std::fprintf(stderr, "firn: %s%s\n", level == LogLevel::warning ? "warning: " : "", line.c_str());
+    std::fprintf(stderr, "firn: %s%s\n", level == LogLevel::warning ? "warning: " : "", one_line(line).c_str());
   });
   CLI::App program("Firn simulates snow, jelly and other materials by the material point method.", "firn");
   program.set_version_flag("--version", "firn " FIRN_VERSION);
