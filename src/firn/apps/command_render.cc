@@ -100,14 +100,16 @@ void render_run(const RenderOptions& options) {
   RunPainter painter(scene, target, is_whole);
   std::vector<std::int64_t> skipped;
   for (std::int64_t frame = is_whole ? 1 : options.frame; frame <= (is_whole ? count : options.frame); ++frame) {
+    Snapshot snapshot;
     try {
-      painter.draw(frame,
-                   read_own_frame(folder.particles() / series[static_cast<std::size_t>(frame - 1)].name, scenes));
+      snapshot = read_own_frame(folder.particles() / series[static_cast<std::size_t>(frame - 1)].name, scenes);
     } catch (const Error& bad) {
-      if (!is_whole || bad.kind() != ErrorKind::files) throw;
+      if (!is_whole) throw;
       log_warning(fmt::format("frame {} skipped: {}", frame, bad.what()));
       skipped.push_back(frame);
+      continue;
     }
+    painter.draw(frame, snapshot);
   }
   painter.finish();
   if (skipped.empty()) return;

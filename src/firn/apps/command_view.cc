@@ -1,4 +1,5 @@
 #include <firn/apps/commands.h>
+#include <firn/apps/run_cost.h>
 #include <firn/apps/run_folder.h>
 #include <firn/apps/scene_options.h>
 #include <firn/apps/viewer/run_playback.h>
@@ -43,7 +44,9 @@ void view_run(const ViewOptions& options) {
 void view_scene(const ViewOptions& options) {
   const Scene scene = load(options.scene);
   ViewerWindow::require_display();
-  SimulationPlayer player([scene] { return Simulation::create(scene); });
+  SimulationPlayer player([scene] {
+    return Simulation::create(scene, [&](const WorldPlan& plan) { check_memory(scene, plan, false); });
+  });
   show(scene, player, options);
 }
 

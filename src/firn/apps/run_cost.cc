@@ -67,7 +67,7 @@ void check_memory(const Scene& scene, const WorldPlan& plan, bool is_forced) {
   if (refusal.empty()) return;
   if (!is_forced) {
     throw Error(ErrorKind::resources,
-                refusal + "; --oversize starts nevertheless, and firn check estimates how long it would take");
+                refusal + "; firn run --oversize starts nevertheless, and firn check estimates how long it would take");
   }
   log_warning(refusal);
 }

@@ -44,14 +44,14 @@ ParticleFailure fastest_particle(const World<Real, dim>& world) {
   return failure;
 }
 
-std::string describe_endless(const ParticleFailure& failure, const std::string& material, std::uint64_t step, double t,
-                             double dt) {
+std::string describe_endless(const ParticleFailure& failure, const std::string& material, const std::string& limit,
+                             std::uint64_t step, double t, double dt) {
   return fmt::format(
-      "step {} at t = {:.6g} s would take dt = {:.3g} s, more than {:g} steps to a frame: the fastest particle is {} "
-      "of "
-      "\"{}\" at x = ({:.4g}) m with {:.4g} m/s; lower velocities, forces or stiffnesses, or set limits.speed to park "
-      "such particles",
-      step, t, dt, kMostSteps, failure.id, material, fmt::join(failure.position, ", "),
+      "step {} at t = {:.6g} s would take dt = {:.3g} s, more than {:g} steps to a frame, by {}: the fastest particle "
+      "is "
+      "{} of \"{}\" at x = ({:.4g}) m with {:.4g} m/s; lower velocities, forces or stiffnesses, or set limits.speed to "
+      "park such particles",
+      step, t, dt, kMostSteps, limit, failure.id, material, fmt::join(failure.position, ", "),
       std::sqrt(square_of(failure.velocity)));
 }
 

@@ -20,8 +20,8 @@ bool is_endless(const TimeStep& step, double frame_rate);
 template <class Real, int dim>
 ParticleFailure fastest_particle(const World<Real, dim>& world);
 
-/// What such a run ends with: the step, the particle and what to change.
-std::string describe_endless(const ParticleFailure& failure, const std::string& material, std::uint64_t step, double t,
-                             double dt);
+/// What such a run ends with: the step, what bounds it, the particle and what to change.
+std::string describe_endless(const ParticleFailure& failure, const std::string& material, const std::string& limit,
+                             std::uint64_t step, double t, double dt);
 
 }  // namespace firn

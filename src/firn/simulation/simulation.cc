@@ -428,7 +428,8 @@ class SimulationOf final : public Simulation {
 
   std::string describe(const ParticleFailure& failure, double dt) const {
     const auto& material = world_->materials[failure.material];
-    if (failure.cause == kTooFast) return describe_endless(failure, material.name, world_->steps, world_->t, dt);
+    if (failure.cause == kTooFast)
+      return describe_endless(failure, material.name, report_.limit, world_->steps, world_->t, dt);
     Mat<double, dim> F;
     std::copy_n(failure.strain.begin(), dim * dim, F.e);
     Vec<double, dim> v;
