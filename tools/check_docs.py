@@ -9,6 +9,7 @@
 - Backticked paths (`state/grid.h`, `tools/check_docs.py`) and tests (`core.Svd.Reconstructs`) exist.
 - The headings of docs/algorithm.md are the verbs of the step; the module table of docs/architecture.md is the one that
   check_layers.py enforces.
+- docs/bad-input.md has its rows in order, each with a test.
 """
 
 import argparse
@@ -27,6 +28,7 @@ TREE_FOLDERS = ("src", "tests", "tools", "docs", "scenes", "cmake", "bench")
 PATH = re.compile(r"^[\w.-]+(?:/[\w.-]+)+$")
 TEST_NAME = re.compile(r"^([a-z_]+)\.([A-Z]\w*)\.(\w+)$")
 TEST_MACRO = re.compile(r"\b(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\s*\)")
+BAD_INPUT_ROWS = 50
 README_BLOCKS = ["scenes/first_2d.toml", "scenes/first_3d.toml"]
 
 
@@ -87,6 +89,7 @@ class Checker:
         self.check_readme_blocks()
         self.check_verbs()
         self.check_module_table()
+        self.check_bad_input()
         return self.findings
 
     def check_links(self, page):
@@ -163,6 +166,19 @@ class Checker:
             if listed != check_layers.ALLOWED.get(module):
                 self.report(path, number, f"{module} may include {check_layers.ALLOWED.get(module)}, not {listed}")
 
+    def check_bad_input(self):
+        """Rows `| 1 | input | what Firn does | exit code | message | tests |`, whose tests check_names() looks up."""
+        path = self.root / "docs/bad-input.md"
+        rows = []
+        for number, line in self.pages[path].prose if path in self.pages else []:
+            if match := re.match(r"\|\s*(\d+)\s*\|", line):
+                rows.append(int(match[1]))
+                tests = [span for span in CODE_SPAN.findall(line.rstrip(" |").rpartition("|")[2]) if TEST_NAME.match(span)]
+                if not tests:
+                    self.report(path, number, f"row {match[1]} has no test")
+        if rows != list(range(1, BAD_INPUT_ROWS + 1)):
+            self.report(path, 1, f"the rows must be 1 to {BAD_INPUT_ROWS}; found {', '.join(map(str, rows)) or 'none'}")
+
 
 def module_table():
     rows = []
@@ -170,6 +186,10 @@ def module_table():
         listed = "all above" if allowed is None else ", ".join(allowed)
         rows.append(f"| {number} | {module} | purpose | {listed} |\n")
     return "".join(rows)
+
+
+def bad_input_rows(numbers, test="`core.Suite.Case`"):
+    return "".join(f"| {n} | input | refuses | 2 | `a | b` | {test} |\n" for n in numbers)
 
 
 SCENE = "end_time = 1\n"
@@ -180,6 +200,7 @@ GOOD_TREE = {
     "docs/a.md": "## Two words\n[web](https://example.org) [up](../README.md)\n",
     "docs/algorithm.md": "# Step\n## sort\n## scatter\n",
     "docs/architecture.md": module_table(),
+    "docs/bad-input.md": bad_input_rows(range(1, BAD_INPUT_ROWS + 1)),
     "src/firn/core/x.h": "#pragma once\n",
     "src/firn/integrators/world.h": 'kVerbNames = {"sort", "scatter"};\n',
     "tests/core/test_x.cc": "TEST(Suite, Case) {}\n",
@@ -196,6 +217,9 @@ BAD_FILES = [
     ("docs/b.md", "```toml scenes/first_2d.toml\nend_time = 2\n```\n", "block differs"),
     ("README.md", "# Bare\n", "does not show"),
     ("docs/algorithm.md", "## scatter\n## sort\n", "heading per verb"),
+    ("docs/bad-input.md", bad_input_rows(range(1, BAD_INPUT_ROWS)), "rows must be"),
+    ("docs/bad-input.md", bad_input_rows(range(1, BAD_INPUT_ROWS + 1), "none"), "has no test"),
+    ("docs/bad-input.md", bad_input_rows(range(1, BAD_INPUT_ROWS + 1), "`core.Suite.Gone`"), "no test"),
     ("docs/architecture.md", module_table().replace("| 3 | materials | purpose | core |", ""), "modules must be"),
     ("docs/architecture.md", module_table().replace("| purpose | core |", "| purpose | io |", 1), "may include"),
 ]

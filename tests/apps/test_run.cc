@@ -153,7 +153,9 @@ TEST_F(RunScene, ResultsAreNeverOverwrittenUnasked) {
   const std::string before = bytes(out("stats.csv"));
   const ProgramResult again = run();
   EXPECT_EQ(again.exit_code, 3);
-  EXPECT_TRUE(matches(again.errors, "firn: .*out already holds results \\(particles\\); use --force .*\n"));
+  EXPECT_TRUE(matches(again.errors,
+                      "firn: .*out already holds results \\(2 frames, 2 pictures, film.mp4, stats.csv, .*\\); firn "
+                      "resume .*--force .*\n"));
   EXPECT_EQ(bytes(out("stats.csv")), before);
   EXPECT_EQ(run("--force --set end_time=0.025").exit_code, 0);
   EXPECT_EQ(bytes(out("mine.txt")), "keep");

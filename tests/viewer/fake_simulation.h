@@ -54,6 +54,7 @@ class FakeSimulation final : public Simulation {
   double time() const override { return frame_time(frame_); }
   std::int64_t particle_count() const override { return 1; }
   TimeStep step() override { return {}; }
+  StepOutlook outlook() const override { return {}; }
   Checkpoint checkpoint() const override { return {}; }
   void restore(const Checkpoint&) override {}
   std::optional<FrameReport> advance_frame(const Pause&) override {

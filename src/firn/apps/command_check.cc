@@ -1,7 +1,9 @@
 #include <firn/apps/commands.h>
 #include <firn/apps/machine.h>
 #include <firn/apps/progress.h>
+#include <firn/apps/run_cost.h>
 #include <firn/apps/scene_options.h>
+#include <firn/core/linear_algebra.h>
 #include <firn/core/log.h>
 #include <firn/scene/build_world.h>
 #include <firn/simulation/memory_estimate.h>
@@ -12,46 +14,52 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <string>
 
 namespace firn {
 namespace {
 
 /// Cost of a scene, found by a few steps of the same scene with few particles.
 struct Calibration {
-  double dt_cells = 0;  ///< first time step / cell size, s/m
-  std::string limit;
+  StepOutlook outlook;  ///< of the first step, for the scene's own cells
   double seconds_per_particle_step = 0;
 };
 
 constexpr std::int64_t kCalibrationParticles = 20000;
 constexpr int kCalibrationSteps = 5;
-/// Columns, grid, tiles, sort space and one copy to take a frame back, as measured: bytes per particle.
-constexpr double kBytesPerParticle[2] = {400, 700};
-/// Bytes that a frame file takes per particle, compressed.
-constexpr double kFrameBytesPerParticle[2] = {50, 100};
 
 Calibration calibrate(const Scene& scene, const WorldPlan& plan) {
   Scene small = scene;
   small.resolution.cell_size.reset();
   small.resolution.particles = std::min(plan.particles, kCalibrationParticles);
+  small.limits.max_dt.reset();
   // A coarser grid would break periodic lengths of a whole number of blocks, and needs bodies to be found from.
-  if (norm(scene.method.periodic) > 0 || scene.bodies.empty()) small = scene;
+  if (norm(scene.method.periodic) > 0 || scene.bodies.empty()) small.resolution = scene.resolution;
   const LogSink sink = set_log_sink({});  // the meshes were judged once already
-  const auto simulation = Simulation::create(small);
-  Calibration calibration;
-  const auto start = std::chrono::steady_clock::now();
-  for (int step = 0; step < kCalibrationSteps; ++step) {
-    const TimeStep taken = simulation->step();
-    if (step > 0) continue;
-    calibration.dt_cells = taken.dt / simulation->plan().cell_size;
-    std::vector<std::string> names;
-    for (const MaterialSettings& material : scene.materials) names.push_back(material.name);
-    calibration.limit = taken.describe(names);
+  std::unique_ptr<Simulation> simulation;
+  try {
+    simulation = Simulation::create(small);
+  } catch (...) {
+    set_log_sink(sink);
+    throw;
   }
+  set_log_sink(sink);
+  Calibration calibration;
+  calibration.outlook = simulation->outlook();
+  // Close enough: the step of viscous material shrinks with the square of the cell size, the others with the cell size.
+  const double finer = plan.cell_size / simulation->plan().cell_size;
+  calibration.outlook.dt *= calibration.outlook.limit.starts_with("viscous") ? finer * finer : finer;
+  if (scene.limits.max_dt && calibration.outlook.dt > *scene.limits.max_dt) {
+    calibration.outlook.dt = *scene.limits.max_dt;
+    calibration.outlook.limit = "max_dt";
+  }
+  warn_of_overlaps(scene, *simulation, plan);
+  const auto start = std::chrono::steady_clock::now();
+  for (int step = 0; step < kCalibrationSteps; ++step) simulation->step();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   calibration.seconds_per_particle_step =
       seconds / kCalibrationSteps / static_cast<double>(std::max<std::int64_t>(simulation->particle_count(), 1));
-  set_log_sink(sink);
   return calibration;
 }
 
@@ -73,25 +81,39 @@ void print_checkpoints(const Scene& scene, const WorldPlan& plan) {
              checkpoint_bytes(scene, plan) / 0x1p30, kept, loss);
 }
 
+/// Numbers that follow from the scene and show a wrong unit or axis at a glance.
+void print_scales(const Scene& scene, const WorldPlan& plan, const StepOutlook& outlook) {
+  for (std::size_t m = 0; m < outlook.wave_speeds.size() && m < scene.materials.size(); ++m) {
+    const double c = outlook.wave_speeds[m];
+    if (!(c > 0)) continue;
+    fmt::print("  wave        {:.4g} m/s in {}: steps of {:.2g} s at most\n", c, scene.materials[m].name,
+               scene.limits.elastic_cfl * plan.cell_size / c);
+  }
+  if (const double g = norm(scene.gravity); g > 0) {
+    std::string direction;
+    for (int d = 0; d < scene.dimension; ++d) direction += fmt::format("{}{:.4g}", d > 0 ? ", " : "", scene.gravity[d]);
+    fmt::print("  gravity     [{}] m/s^2: what falls freely for {:g} s falls {:.4g} m and is {:.4g} m/s fast\n",
+               direction, scene.end_time, 0.5 * g * scene.end_time * scene.end_time, g * scene.end_time);
+  }
+  if (std::isfinite(outlook.dt)) fmt::print("  time step   {:.2g} s at the start, by {}\n", outlook.dt, outlook.limit);
+}
+
 void check_scene(const SceneOptions& options) {
   const Scene scene = load(options);
   const WorldPlan plan = plan_world(scene);
   const Calibration calibration = calibrate(scene, plan);
-  const int precision = scene.precision == Scene::Precision::single ? 0 : 1;
   double emitted = 0;
   for (const EmitterSettings& emitter : scene.emitters) emitted += emitted_particles(scene, emitter, plan);
   // On the average over the run, as if nothing went down a sink.
   const double particles = static_cast<double>(plan.particles) + 0.5 * emitted;
-  const double dt = calibration.dt_cells * plan.cell_size;
   const double frames = std::floor(scene.end_time * scene.frame_rate) + 1;
-  const double steps = std::ceil(scene.end_time / dt);
-  // A checkpoint is gathered and then laid out as a file before it is written.
-  const double memory = (particles + 0.5 * emitted) * kBytesPerParticle[precision] + 2 * checkpoint_bytes(scene, plan);
+  const double steps = steps_needed(scene, calibration.outlook.dt);
   fmt::print("{} is fine\n", options.file);
   fmt::print("  cell size   {:.4g} m\n", plan.cell_size);
   for (const WorldPlan::Body& body : plan.bodies) {
-    fmt::print("  body        {}: {} particles, {:.4g} {}, {:.1f} cells wide\n", body.name, body.particles, body.volume,
-               scene.dimension == 3 ? "m^3" : "m^2", body.width_in_cells);
+    fmt::print("  body        {}: {} particles, {:.4g} {}, {:.4g} m or {:.1f} cells wide\n", body.name, body.particles,
+               body.volume, scene.dimension == 3 ? "m^3" : "m^2", body.width_in_cells * plan.cell_size,
+               body.width_in_cells);
   }
   for (const EmitterSettings& emitter : scene.emitters) {
     fmt::print("  emitter     {}: {}\n", emitter.name,
@@ -100,19 +122,21 @@ void check_scene(const SceneOptions& options) {
   }
   fmt::print("  particles   {:.0f}{}\n", static_cast<double>(plan.particles) + emitted,
              emitted > 0 ? " at the end" : "");
-  fmt::print("  memory      {:.2f} GiB of {:.1f} GiB\n", memory / 0x1p30, static_cast<double>(total_memory()) / 0x1p30);
-  fmt::print("  disk        {:.2f} GiB for {} frames\n",
-             frames * particles * kFrameBytesPerParticle[precision] / 0x1p30, frames);
+  fmt::print("  memory      {:.2f} GiB of {:.1f} GiB\n", memory_needed(scene, plan) / 0x1p30,
+             static_cast<double>(total_memory()) / 0x1p30);
+  fmt::print("  disk        {:.2f} GiB for {} frames, {:.0f} bytes per particle and frame\n",
+             disk_needed(scene, plan) / 0x1p30, frames, frame_bytes_per_particle(scene));
   print_checkpoints(scene, plan);
-  fmt::print("  time step   {:.2g} s at the start, by {}\n", dt, calibration.limit);
+  print_scales(scene, plan, calibration.outlook);
   fmt::print("  steps       {:.0f} or more: faster or stiffer material takes shorter ones\n", steps);
   fmt::print("  time        {} or more, pictures not counted\n",
              duration_text(steps * particles * calibration.seconds_per_particle_step));
   std::fflush(stdout);
-  if (memory > 0.9 * static_cast<double>(total_memory())) {
-    log_warning(fmt::format("the scene needs about {:.1f} GiB of memory and the machine has {:.1f}; use larger cells",
-                            memory / 0x1p30, static_cast<double>(total_memory()) / 0x1p30));
+  if (const std::string refusal = memory_refusal(scene, plan); !refusal.empty()) {
+    log_warning(refusal + "; firn run refuses it without --oversize");
   }
+  warn_of_disk(scene, plan);
+  warn_of_steps(scene, calibration.outlook);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <firn/apps/commands.h>
 #include <firn/core/error.h>
 #include <firn/scene/nearest.h>
+#include <firn/scene/value_text.h>
 
 #include <fmt/format.h>
 
@@ -57,6 +58,12 @@ void add_commands(CLI::App& program) {
 }
 
 int run_command_line(CLI::App& program, int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    // Names end up in scenes and lists of frames, which are UTF-8.
+    if (is_utf8(argv[i])) continue;
+    throw Error(ErrorKind::usage,
+                fmt::format("argument {} is not UTF-8 text; rename the file or folder, or write the name in UTF-8", i));
+  }
   try {
     program.parse(argc, argv);
     return 0;

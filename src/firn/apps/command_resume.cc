@@ -11,12 +11,16 @@
 #include <firn/scene/load_scene.h>
 #include <firn/scene/resolved.h>
 #include <firn/scene/scene_keys.h>
+#include <firn/scene/value_text.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <tbb/info.h>
 
+#include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,15 +34,15 @@ struct ResumeOptions {
   std::vector<std::string> set;
   std::int64_t from_frame = 0;
   std::int64_t frames = 0;
-  int threads = 0;
+  std::optional<int> threads;
   bool allow_changed = false;
   Progress::Style progress = Progress::Style::text;
 };
 
 Scene load(const ResumeOptions& options, const RunFolder& folder) {
   std::vector<std::string> set = options.set;
-  if (options.threads > 0) set.push_back(fmt::format("threads={}", options.threads));
-  set.push_back("output.folder=" + toml_quoted(options.folder));
+  if (options.threads) set.push_back(fmt::format("threads={}", *options.threads));
+  set.push_back("output.folder=" + in_quotes(options.folder));
   return load_scene(options.scene.empty() ? folder.scene() : std::filesystem::path(options.scene), set);
 }
 
@@ -127,6 +131,8 @@ void resume(const ResumeOptions& options) {
   if (scene.render.every_nth > 0) make_folder(folder.images());
   if (!scene.probes.empty()) make_folder(folder.probes());
   write_scene(scene, folder);
+  info.earlier_scenes = scenes_of_frames(folder);
+  std::erase(info.earlier_scenes, scene_hash(scene));
   info.status = "running";
   info.threads = scene.threads > 0 ? scene.threads : tbb::info::default_concurrency();
   info.frames = simulation->frame();
@@ -148,9 +154,9 @@ void add_resume(CLI::App& program) {
   const auto options = std::make_shared<ResumeOptions>();
   command->add_option("run", options->folder, "Output folder of the run")->required();
   command->add_option("--from-frame", options->from_frame, "Go on from the newest checkpoint at or before this frame")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(std::int64_t(1), std::int64_t(std::numeric_limits<std::int32_t>::max())));
   command->add_option("--frames", options->frames, "Number of frames that the whole run is to have")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(std::int64_t(1), std::int64_t(std::numeric_limits<std::int32_t>::max())));
   command->add_flag("--allow-changed", options->allow_changed,
                     "Go on although the scene differs from the checkpoint's");
   command->add_option("--scene", options->scene, "Scene file (TOML) to go on with, instead of the run's own");
@@ -160,7 +166,7 @@ void add_resume(CLI::App& program) {
       ->expected(1)
       ->allow_extra_args(false);
   command->add_option("--threads", options->threads, "Threads to compute with; any number gives the same bits")
-      ->check(CLI::Range(1, 1024));
+      ->check(CLI::Range(0, 1000000));
   add_progress_option(*command, options->progress);
   command->callback([options] { resume(*options); });
 }

@@ -1,5 +1,6 @@
 #include <firn/apps/commands.h>
 #include <firn/apps/interrupt.h>
+#include <firn/apps/run_cost.h>
 #include <firn/apps/run_lock.h>
 #include <firn/apps/run_loop.h>
 #include <firn/apps/scene_options.h>
@@ -8,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace firn {
 namespace {
@@ -16,18 +18,30 @@ struct RunOptions {
   std::shared_ptr<SceneOptions> scene;
   Progress::Style progress = Progress::Style::text;
   bool force = false;
+  bool oversize = false;
 };
 
 void run_scene(const RunOptions& options) {
   const Scene scene = load(*options.scene);
-  const RunLock lock({scene.output.folder});
+  const RunFolder place = {scene.output.folder};
+  const std::vector<std::filesystem::path> missing = missing_places(place);
+  const RunLock lock(place);
+  NewPlaces made(missing);
+  refuse_results(place, options.force);
+  leave_at_interrupts();
+  // Whatever is wrong with the scene comes out here, while nothing but the lock is written.
+  const std::unique_ptr<Simulation> simulation =
+      create_simulation(scene, nullptr, [&](const WorldPlan& plan) { check_memory(scene, plan, options.oversize); });
+  warn_of_disk(scene, simulation->plan());
+  warn_of_steps(scene, simulation->outlook());
+  warn_of_overlaps(scene, *simulation, simulation->plan());
   const RunFolder folder = prepare_run_folder(scene, options.force);
+  made.keep();
   catch_interrupts();
   RunInfo info;
   info.status = "running";
   info.scene = scene.file.string();
   info.threads = scene.threads > 0 ? scene.threads : tbb::info::default_concurrency();
-  const std::unique_ptr<Simulation> simulation = create_simulation(scene);
   info.cell_size = simulation->plan().cell_size;
   write_run_info(folder, scene, info);
   run_to_end({scene, folder, info, *simulation, options.progress});
@@ -47,6 +61,7 @@ void add_run(CLI::App& program) {
   options->scene = add_scene_options(*command);
   add_progress_option(*command, options->progress);
   command->add_flag("--force", options->force, "Replace the results that the output folder holds");
+  command->add_flag("--oversize", options->oversize, "Start although the scene needs more memory than the machine has");
   command->callback([options] { run_scene(*options); });
 }
 

@@ -1,4 +1,5 @@
 #include <firn/apps/commands.h>
+#include <firn/apps/run_cost.h>
 #include <firn/apps/run_folder.h>
 #include <firn/apps/scene_options.h>
 #include <firn/apps/viewer/run_playback.h>
@@ -8,7 +9,9 @@
 #include <firn/scene/load_scene.h>
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 namespace firn {
@@ -41,7 +44,9 @@ void view_run(const ViewOptions& options) {
 void view_scene(const ViewOptions& options) {
   const Scene scene = load(options.scene);
   ViewerWindow::require_display();
-  SimulationPlayer player([scene] { return Simulation::create(scene); });
+  SimulationPlayer player([scene] {
+    return Simulation::create(scene, [&](const WorldPlan& plan) { check_memory(scene, plan, false); });
+  });
   show(scene, player, options);
 }
 
@@ -56,10 +61,10 @@ void add_view(CLI::App& program) {
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
-  command->add_option("--threads", options->scene.threads, "Threads to compute with; all of them if not given")
-      ->check(CLI::Range(1, 1024));
+  command->add_option("--threads", options->scene.threads, "Threads to compute with; 0, or not given: all of them")
+      ->check(CLI::Range(0, 1000000));
   command->add_option("--particles", options->scene.particles, "Number of particles instead of the scene's resolution")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(std::int64_t(1), std::int64_t(std::numeric_limits<std::int32_t>::max())));
   command->add_flag("--paused", options->paused, "Wait for the space bar");
   command->callback([options] {
     if (std::filesystem::is_directory(options->scene.file)) {

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <string_view>
 
 namespace firn {
 namespace {
@@ -16,7 +17,19 @@ void on_signal(int) {
   flag = 1;
 }
 
+void on_early_signal(int) {
+  constexpr std::string_view kMessage = "firn: stopped before the first frame\n";
+  // Nothing else is left to be told should this fail.
+  if (::write(STDERR_FILENO, kMessage.data(), kMessage.size()) >= 0) ::_exit(kInterrupted);
+  ::_exit(kInterrupted);
+}
+
 }  // namespace
+
+void leave_at_interrupts() {
+  std::signal(SIGINT, on_early_signal);
+  std::signal(SIGTERM, on_early_signal);
+}
 
 void catch_interrupts() {
   std::signal(SIGINT, on_signal);

@@ -1,6 +1,7 @@
 #include <firn/apps/commands.h>
 #include <firn/core/error.h>
 #include <firn/core/log.h>
+#include <firn/scene/value_text.h>
 
 #include <malloc.h>
 
@@ -13,7 +14,8 @@ namespace {
 constexpr int kInterrupted = 130, kUnexpected = 1;
 
 int report(const char* message, int exit_code) {
-  std::fprintf(stderr, "firn: %s\n", message);
+  // Names of files and objects may hold line ends; a message is one line.
+  std::fprintf(stderr, "firn: %s\n", firn::one_line(message).c_str());
   return exit_code;
 }
 
@@ -24,7 +26,7 @@ int main(int argc, char** argv) {
   // Left alone, the C library learns to keep what large arrays give back: 2 % of a run's memory.
   mallopt(M_MMAP_THRESHOLD, 1 << 17);
   set_log_sink([](LogLevel level, const std::string& line) {
-    std::fprintf(stderr, "firn: %s%s\n", level == LogLevel::warning ? "warning: " : "", line.c_str());
+    std::fprintf(stderr, "firn: %s%s\n", level == LogLevel::warning ? "warning: " : "", one_line(line).c_str());
   });
   CLI::App program("Firn simulates snow, jelly and other materials by the material point method.", "firn");
   program.set_version_flag("--version", "firn " FIRN_VERSION);

@@ -8,6 +8,8 @@
 namespace firn {
 
 std::string duration_text(double seconds) {
+  constexpr double kYear = 365.25 * 24 * 3600;
+  if (!(seconds < 2 * kYear)) return fmt::format("{:.2g} years", seconds / kYear);
   const auto whole = static_cast<std::int64_t>(std::llround(std::max(seconds, 0.0)));
   if (whole >= 3600) return fmt::format("{}h {:02}m", whole / 3600, whole / 60 % 60);
   if (whole >= 60) return fmt::format("{}m {:02}s", whole / 60, whole % 60);

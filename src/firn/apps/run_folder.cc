@@ -4,6 +4,7 @@
 #include <firn/io/atomic_file.h>
 #include <firn/scene/resolved.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <fstream>
 #include <iterator>
@@ -21,6 +22,23 @@ std::vector<fs::path> results_of(const RunFolder& folder) {
           folder.probes(),    folder.scene(),  folder.run_info(), folder.checkpoints()};
 }
 
+/// "48 frames", or the name of what is no folder of many.
+std::string content_text(const fs::path& result) {
+  const std::string name = result.filename().string();
+  const char* kind = name == "particles" ? "frame"
+                     : name == "images"  ? "picture"
+                     : name == "probes"  ? "probe"
+                                         : "checkpoint";
+  std::error_code error;
+  if (!fs::is_directory(result, error)) return name;
+  std::size_t count = 0;
+  for (fs::directory_iterator entry(result, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path& path = entry->path();
+    if (path.extension() != ".part" && path.extension() != ".series") ++count;
+  }
+  return fmt::format("{} {}{}", count, kind, count == 1 ? "" : "s");
+}
+
 }  // namespace
 
 void make_folder(const fs::path& path) {
@@ -33,17 +51,44 @@ void make_folder(const fs::path& path) {
 
 fs::path RunFolder::image(std::int64_t frame) const { return images() / fmt::format("image.{:04}.png", frame); }
 
+std::vector<fs::path> missing_places(const RunFolder& folder) {
+  std::vector<fs::path> missing;
+  std::error_code error;
+  if (!fs::exists(folder.lock(), error)) missing.push_back(folder.lock());
+  for (fs::path place = folder.root; !place.empty() && !fs::exists(place, error); place = place.parent_path()) {
+    missing.push_back(place);
+    if (place == place.parent_path()) break;
+  }
+  return missing;
+}
+
+NewPlaces::~NewPlaces() {
+  std::error_code ignored;
+  for (const fs::path& place : places_) fs::remove(place, ignored);
+}
+
+void refuse_results(const RunFolder& folder, bool force) {
+  if (force) return;
+  std::vector<std::string> contents;
+  for (const fs::path& result : results_of(folder)) {
+    std::error_code error;
+    if (fs::exists(result, error)) contents.push_back(content_text(result));
+  }
+  if (contents.empty()) return;
+  throw Error(
+      ErrorKind::files,
+      fmt::format("{} already holds results ({}); firn resume goes on with them, --force replaces them, -o takes "
+                  "another folder",
+                  folder.root.string(), fmt::join(contents, ", ")));
+}
+
 RunFolder prepare_run_folder(const Scene& scene, bool force) {
   const RunFolder folder = {scene.output.folder};
   make_folder(folder.root);
+  refuse_results(folder, force);
   for (const fs::path& result : results_of(folder)) {
     std::error_code error;
     if (!fs::exists(result, error)) continue;
-    if (!force) {
-      throw Error(ErrorKind::files,
-                  fmt::format("{} already holds results ({}); use --force to replace them, or -o for another folder",
-                              folder.root.string(), result.filename().string()));
-    }
     fs::remove_all(result, error);
     if (error) {
       throw Error(ErrorKind::files, fmt::format("cannot remove the old {}: {}", result.string(), error.message()));
@@ -77,6 +122,7 @@ void write_run_info(const RunFolder& folder, const Scene& scene, const RunInfo& 
   json["status"] = info.status;
   json["scene"] = info.scene.empty() ? scene.file.string() : info.scene;
   json["scene_hash"] = scene_hash(scene);
+  if (!info.earlier_scenes.empty()) json["earlier_scene_hashes"] = info.earlier_scenes;
   json["frames"] = info.frames;
   json["particles"] = info.particles;
   json["cell_size"] = info.cell_size;
@@ -132,6 +178,19 @@ RunInfo read_run_info(const RunFolder& folder) {
     throw Error(ErrorKind::files,
                 fmt::format("{}: damaged, or not of a run: {}; compute the run again with firn run --force",
                             path.string(), error.what()));
+  }
+}
+
+std::vector<std::string> scenes_of_frames(const RunFolder& folder) {
+  std::ifstream stream(folder.run_info(), std::ios::binary);
+  const nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
+  if (!json.is_object()) return {};
+  try {
+    std::vector<std::string> hashes = json.value("earlier_scene_hashes", std::vector<std::string>());
+    hashes.push_back(json.at("scene_hash").get<std::string>());
+    return hashes;
+  } catch (const nlohmann::json::exception&) {
+    return {};
   }
 }
 

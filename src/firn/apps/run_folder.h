@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace firn {
@@ -30,6 +31,26 @@ struct RunFolder {
 
 /// Creates a folder and those above it. Error(files) if that fails.
 void make_folder(const std::filesystem::path& path);
+
+/// The folder, those above it and its lock, as far as they do not exist; the deepest first.
+std::vector<std::filesystem::path> missing_places(const RunFolder& folder);
+
+/// Removes places that are empty, unless they are kept: a run that is refused leaves nothing behind. Hold a RunLock.
+class NewPlaces {
+ public:
+  explicit NewPlaces(std::vector<std::filesystem::path> places) : places_(std::move(places)) {}
+  ~NewPlaces();
+  NewPlaces(const NewPlaces&) = delete;
+  NewPlaces& operator=(const NewPlaces&) = delete;
+
+  void keep() { places_.clear(); }
+
+ private:
+  std::vector<std::filesystem::path> places_;
+};
+
+/// Error(files) that lists what would be lost if the folder already holds results, unless `force`.
+void refuse_results(const RunFolder& folder, bool force);
 
 /// Creates the folder and what is in it, and proves by writing the resolved scene that it can be written to. A folder
 /// that already holds results is refused with Error(files), unless `force`: then what a run writes is removed from it,
@@ -59,6 +80,7 @@ struct RunInfo {
   double cell_size = 0;  ///< m
   double wall_seconds = 0;
   int threads = 0;
+  std::vector<std::string> earlier_scenes = {};   ///< hashes of other scenes that frames are of; not read back
   std::vector<CheckpointEntry> checkpoints = {};  ///< in the order of their times
 };
 
@@ -67,5 +89,8 @@ void write_run_info(const RunFolder& folder, const Scene& scene, const RunInfo& 
 
 /// Error(files) if the folder is not that of a run, or if run.json is damaged.
 RunInfo read_run_info(const RunFolder& folder);
+
+/// Hashes of the scenes that the folder's frames may be of; none if run.json does not tell.
+std::vector<std::string> scenes_of_frames(const RunFolder& folder);
 
 }  // namespace firn

@@ -22,12 +22,20 @@ std::string owner_of(int file) {
   return owner.empty() ? "another process" : owner;
 }
 
-void write_owner(int file) {
+/// Also proves that the folder takes bytes: a full disk shows before anything is computed.
+void write_owner(int file, const std::filesystem::path& path) {
   std::array<char, 128> host = {};
   ::gethostname(host.data(), host.size() - 1);
   const std::string owner = fmt::format("process {} on {}\n", ::getpid(), host.data());
-  // What the file says is for people; the lock holds without it.
-  if (::ftruncate(file, 0) == 0 && ::pwrite(file, owner.data(), owner.size(), 0) < 0) return;
+  if (::ftruncate(file, 0) == 0 && ::pwrite(file, owner.data(), owner.size(), 0) >= 0 &&
+      (::fsync(file) == 0 || errno == EINVAL)) {
+    return;
+  }
+  const int reason = errno;
+  ::close(file);
+  throw Error(ErrorKind::files, fmt::format("{}: cannot write to the output folder: {}; free some space, or choose "
+                                            "another folder with -o",
+                                            path.string(), std::strerror(reason)));
 }
 
 }  // namespace
@@ -43,7 +51,7 @@ RunLock::RunLock(const RunFolder& folder) {
                             path.string(), std::strerror(errno)));
   }
   if (::flock(file_, LOCK_EX | LOCK_NB) == 0) {
-    write_owner(file_);
+    write_owner(file_, path);
     return;
   }
   if (errno == EWOULDBLOCK) {

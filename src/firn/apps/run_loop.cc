@@ -3,6 +3,7 @@
 #include <firn/apps/interrupt.h>
 #include <firn/apps/run_loop.h>
 #include <firn/core/error.h>
+#include <firn/scene/value_text.h>
 #include <firn/simulation/memory_estimate.h>
 #include <fmt/format.h>
 
@@ -14,7 +15,7 @@ namespace firn {
 namespace {
 
 void print_line(const std::string& line) {
-  std::fprintf(stdout, "%s\n", line.c_str());
+  std::fprintf(stdout, "%s\n", one_line(line).c_str());
   std::fflush(stdout);
 }
 
@@ -43,6 +44,10 @@ class FrameLoop {
   /// Everything that was handed over is on the disk, and the film is closed.
   void finish() { output_.finish(); }
   bool has_film() const { return output_.has_film(); }
+  /// After a failure that was taken back.
+  void save_last_good() {
+    if (!store_.holds(job_.simulation)) save();
+  }
 
  private:
   static FrameHistory history_of(const RunJob& job) {
@@ -88,7 +93,7 @@ Error out_of_memory(const Scene& scene, const WorldPlan* plan) {
 std::string newest_text(const RunJob& job) {
   if (job.info.checkpoints.empty()) return "";
   return fmt::format(
-      " The newest checkpoint is of frame {}: firn resume --allow-changed goes on from it with other "
+      ". The newest checkpoint is of frame {}: firn resume --allow-changed goes on from it with other "
       "limits.",
       job.info.checkpoints.back().frame);
 }
@@ -114,8 +119,9 @@ void run_to_end(const RunJob& job) {
       loop.run();
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::numerical) throw;
-      // What was accepted before the failure is kept and readable.
+      // What was accepted before the failure is kept and readable, and the run can be taken up from there.
       loop.finish();
+      if (job.scene.rollback == Scene::Rollback::memory) loop.save_last_good();
       throw Error(error.kind(), error.what() + newest_text(job));
     }
     has_film = loop.has_film() && !interrupted();
@@ -138,9 +144,10 @@ void run_to_end(const RunJob& job) {
   if (job.style == Progress::Style::text) print_results(job, has_film);
 }
 
-std::unique_ptr<Simulation> create_simulation(const Scene& scene, const Checkpoint* checkpoint) {
+std::unique_ptr<Simulation> create_simulation(const Scene& scene, const Checkpoint* checkpoint,
+                                              const PlanCheck& check) {
   try {
-    std::unique_ptr<Simulation> simulation = Simulation::create(scene);
+    std::unique_ptr<Simulation> simulation = Simulation::create(scene, check);
     if (checkpoint) simulation->restore(*checkpoint);
     return simulation;
   } catch (const std::bad_alloc&) {

@@ -28,6 +28,8 @@ void run_to_end(const RunJob& job);
 
 /// Simulation::create and, given a checkpoint, restore(); if there is not enough memory, Error(resources) with the
 /// largest arrays.
-std::unique_ptr<Simulation> create_simulation(const Scene& scene, const Checkpoint* checkpoint = nullptr);
+/// @param check is shown the plan before a particle is placed; may be empty
+std::unique_ptr<Simulation> create_simulation(const Scene& scene, const Checkpoint* checkpoint = nullptr,
+                                              const PlanCheck& check = {});
 
 }  // namespace firn

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,13 +16,10 @@ struct SceneOptions {
   std::string file;
   std::vector<std::string> set;
   std::string folder;
-  int threads = 0;
+  std::optional<int> threads;
   std::int64_t particles = 0;
   bool preview = false;
 };
-
-/// A TOML string, for an override.
-std::string toml_quoted(const std::string& text);
 
 /// Declares SCENE, --set, -o, --threads, --particles and --preview.
 std::shared_ptr<SceneOptions> add_scene_options(CLI::App& command);

@@ -19,10 +19,14 @@ std::string list_first(const TriangleMesh& mesh, const MeshEdges& edges) {
 }
 
 void warn_about_cleanup(const MeshCleanup& cleanup, const std::string& name) {
+  const std::size_t removed = cleanup.degenerate_triangles + cleanup.duplicate_triangles;
+  const std::string merged = fmt::format("merged {} {} at the same places as others", cleanup.merged_vertices,
+                                         cleanup.merged_vertices == 1 ? "vertex" : "vertices");
   // Merging is normal (STL repeats every corner), so it is no warning on its own.
-  if (cleanup.degenerate_triangles + cleanup.duplicate_triangles == 0) return;
-  log_warning(fmt::format("{}: removed {} degenerate and {} repeated triangles", name, cleanup.degenerate_triangles,
-                          cleanup.duplicate_triangles));
+  if (removed == 0 && cleanup.merged_vertices > 0) log_info(fmt::format("{}: {}", name, merged));
+  if (removed == 0) return;
+  log_warning(fmt::format("{}: removed {} degenerate and {} repeated triangles, {}", name, cleanup.degenerate_triangles,
+                          cleanup.duplicate_triangles, merged));
 }
 
 void check_closed(const PreparedMesh& prepared, const std::string& name, bool strict) {
@@ -51,7 +55,7 @@ void check_volume(const MeshReport& report, const std::string& name) {
   const bool flat = report.is_closed() ? std::abs(report.volume) <= kFlatness * side * side * side : smallest == 0;
   if (!flat) return;
   throw Error(ErrorKind::usage, fmt::format("{}: the mesh encloses no volume ({:.3g} m^3 in a box of {:.3g} x {:.3g} x "
-                                            "{:.3g} m); give it a thickness",
+                                            "{:.3g} m); give it a thickness (in Blender: the modifier Solidify)",
                                             name, report.volume, size[0], size[1], size[2]));
 }
 

@@ -21,6 +21,10 @@ FrameRows::FrameRows(const std::filesystem::path& path, const std::string& heade
 
 FrameRows FrameRows::resume(const std::filesystem::path& path, const std::string& header, std::int64_t frame,
                             bool keep_later) {
+  // A device may have no end.
+  if (std::error_code error; std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+    throw Error(ErrorKind::files, fmt::format("{}: cannot read the rows: not a file; remove it", path.string()));
+  }
   std::ifstream stream(path, std::ios::binary);
   const int reason = errno;
   if (std::error_code error; !stream && std::filesystem::exists(path, error)) {

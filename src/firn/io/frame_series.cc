@@ -35,6 +35,14 @@ std::vector<SeriesFrame> read_frame_series(const std::filesystem::path& path) {
     std::vector<SeriesFrame> frames;
     for (const nlohmann::json& entry : series.at("files")) {
       frames.push_back({entry.at("name").get<std::string>(), entry.at("time").get<double>()});
+      // A damaged or foreign list must not lead out of the folder.
+      const std::string& name = frames.back().name;
+      if (name.empty() || std::filesystem::path(name).filename() != name) {
+        throw Error(ErrorKind::files,
+                    fmt::format("{}: damaged, or not a list of frames: \"{}\" is not the name of a file "
+                                "beside it",
+                                path.string(), name));
+      }
     }
     return frames;
   } catch (const nlohmann::json::exception& error) {

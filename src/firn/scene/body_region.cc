@@ -1,4 +1,4 @@
-#include <firn/core/error.h>
+#include <firn/core/log.h>
 #include <firn/geometry/prepare_mesh.h>
 #include <firn/io/mesh_reader.h>
 #include <firn/scene/body_region.h>
@@ -61,7 +61,12 @@ std::unique_ptr<Region<3>> mesh_region(const Scene& scene, const BodySettings& b
   PreparedMesh prepared =
       prepare_mesh(read_mesh(scene.locate(body.mesh)), scene.locate(body.mesh).string(), scene.strict_mesh);
   apply(placement_of(body), prepared.mesh);
-  return std::make_unique<MeshRegion>(prepared.mesh);
+  auto region = std::make_unique<MeshRegion>(prepared.mesh);
+  if (region->inside().has_overlaps()) {
+    log_warning(fmt::format("{}: parts of the surface overlap; what lies inside several of them is filled once",
+                            scene.locate(body.mesh).string()));
+  }
+  return region;
 }
 
 std::unique_ptr<Region<2>> polygon_region(const Scene& scene, const BodySettings& body) {

@@ -2,9 +2,11 @@
 #include <firn/materials/model_info.h>
 #include <firn/scene/body_region.h>
 #include <firn/scene/build_world.h>
+#include <firn/scene/clip_to_box.h>
 #include <firn/scene/collider_shape.h>
 #include <firn/scene/force_fields.h>
 #include <firn/scene/initial_velocity.h>
+#include <firn/scene/size_hints.h>
 #include <firn/scene/vary_parameters.h>
 #include <firn/seeding/sampling.h>
 #include <fmt/format.h>
@@ -87,19 +89,22 @@ WorldPlan plan_of(const Scene& scene, const Regions<dim>& regions) {
     if (!(wanted < std::numeric_limits<std::int32_t>::max())) {
       throw Error(
           ErrorKind::usage,
-          fmt::format("body \"{}\": {:.3g} particles are more than the {} that Firn can number; use larger cells",
-                      scene.bodies[b].name, wanted, std::numeric_limits<std::int32_t>::max()));
+          fmt::format(
+              "body \"{}\": {:.3g} particles are more than the {} that Firn can number: it is {:.3g} cells wide "
+              "(cell size {:.3g} m); {}",
+              scene.bodies[b].name, wanted, std::numeric_limits<std::int32_t>::max(),
+              regions[b]->bounds().largest_side() / plan.cell_size, plan.cell_size, too_large_hint(scene.bodies[b])));
     }
     if (!(wanted >= 1)) {
-      throw Error(
-          ErrorKind::usage,
-          fmt::format("body \"{}\" would get no particle: it is {:.2g} cells wide (cell size {:.3g} m); did you mean "
-                      "units = \"mm\" or smaller cells?",
-                      scene.bodies[b].name, regions[b]->bounds().largest_side() / plan.cell_size, plan.cell_size));
+      throw Error(ErrorKind::usage,
+                  fmt::format("body \"{}\" would get no particle: it is {:.2g} cells wide (cell size {:.3g} m); {}",
+                              scene.bodies[b].name, regions[b]->bounds().largest_side() / plan.cell_size,
+                              plan.cell_size, too_small_hint(scene.bodies[b])));
     }
     const auto particles = static_cast<std::int64_t>(std::llround(wanted));
     plan.bodies.push_back(
         {scene.bodies[b].name, regions[b]->volume(), particles, regions[b]->bounds().largest_side() / plan.cell_size});
+    warn_of_size(scene.bodies[b], plan.bodies.back(), plan.cell_size);
     plan.particles += particles;
   }
   return plan;
@@ -158,9 +163,10 @@ WorldPlan plan_world(const Scene& scene) {
 }
 
 template <class Real, int dim>
-BuiltWorld<Real, dim> build_world(const Scene& scene) {
+BuiltWorld<Real, dim> build_world(const Scene& scene, const PlanCheck& check) {
   const Regions<dim> regions = regions_of<dim>(scene);
   WorldPlan plan = plan_of<dim>(scene, regions);
+  if (check) check(plan);
   World<Real, dim> world(plan.cell_size, transfer_of(scene.method), period_of<dim>(scene, plan.cell_size));
   world.gravity = cut<dim>(scene.gravity);
   const auto tractions = std::make_shared<Tractions<dim>>(scene);
@@ -176,7 +182,8 @@ BuiltWorld<Real, dim> build_world(const Scene& scene) {
   plan.particles = 0;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const BodySettings& body = scene.bodies[b];
-    const Samples<dim> samples = fill<dim>(scene, body, *regions[b], plan, b);
+    Samples<dim> samples = fill<dim>(scene, body, *regions[b], plan, b);
+    plan.bodies[b].lost = clip_to_box<dim>(scene, body, samples);
     for (auto& material : world.materials) {
       if (material.name != body.material) continue;
       const std::size_t first = material.particles.size();
@@ -198,9 +205,9 @@ BuiltWorld<Real, dim> build_world(const Scene& scene) {
   return {std::move(world), std::move(plan)};
 }
 
-template BuiltWorld<float, 2> build_world<float, 2>(const Scene&);
-template BuiltWorld<float, 3> build_world<float, 3>(const Scene&);
-template BuiltWorld<double, 2> build_world<double, 2>(const Scene&);
-template BuiltWorld<double, 3> build_world<double, 3>(const Scene&);
+template BuiltWorld<float, 2> build_world<float, 2>(const Scene&, const PlanCheck&);
+template BuiltWorld<float, 3> build_world<float, 3>(const Scene&, const PlanCheck&);
+template BuiltWorld<double, 2> build_world<double, 2>(const Scene&, const PlanCheck&);
+template BuiltWorld<double, 3> build_world<double, 3>(const Scene&, const PlanCheck&);
 
 }  // namespace firn

@@ -5,6 +5,7 @@
 #include <firn/state/snapshot.h>
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct WorldPlan {
     double volume = 0;           ///< m^3 (m^2 in 2D)
     std::int64_t particles = 0;  ///< that its share of the resolution asks for
     double width_in_cells = 0;   ///< longest side of its bounding box
+    double lost = 0;             ///< share that limits.box has cut off; known once particles are placed
   };
   double cell_size = 0;        ///< m
   double particle_volume = 0;  ///< that the resolution asks for, m^3 (m^2 in 2D): the volume of emitted particles
@@ -36,8 +38,12 @@ struct BuiltWorld {
   WorldPlan plan;
 };
 
+/// Is shown the plan before the first particle is placed, and may refuse it by throwing.
+using PlanCheck = std::function<void(const WorldPlan&)>;
+
 /// Fills the bodies with particles and sets up materials, colliders and the grid. Real and dim must be the scene's.
+/// @param check may be empty
 template <class Real, int dim>
-BuiltWorld<Real, dim> build_world(const Scene& scene);
+BuiltWorld<Real, dim> build_world(const Scene& scene, const PlanCheck& check = {});
 
 }  // namespace firn

@@ -6,12 +6,39 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <thread>
 
 namespace firn {
 namespace {
 
 constexpr double kEarthGravity = 9.81;  // m/s^2
+/// Frames have 32-bit numbers in some programs that read them, and nobody waits for more.
+constexpr double kMostFrames = 1e9;
+/// Threads beyond these only cost memory and time. Some more than processors are of use: to test that any number gives
+/// the same bits, and on machines that hide processors.
+constexpr int kThreadsPerProcessor = 4, kThreadsAnywhere = 64;
+
+void limit_threads(SceneDraft& draft) {
+  const int processors = std::max(static_cast<int>(std::thread::hardware_concurrency()), 1);
+  const int most = std::max(kThreadsPerProcessor * processors, kThreadsAnywhere);
+  if (draft.scene.threads <= most) return;
+  log_warning(
+      fmt::format("{}: threads = {} is too many for {} processor{}; going on with {}, which gives the same bits",
+                  draft.document.name, draft.scene.threads, processors, processors == 1 ? "" : "s", most));
+  draft.scene.threads = most;
+}
+
+void check_frame_count(const SceneDraft& draft) {
+  const double frames = draft.scene.end_time * draft.scene.frame_rate;
+  if (frames <= kMostFrames) return;
+  draft.fail("", 0, "end_time",
+             fmt::format("end_time must give at most {:g} frames, got {:.3g} ({} s at a frame_rate of {} 1/s); use a "
+                         "shorter end_time or a lower frame_rate",
+                         kMostFrames, frames, number_text(draft.scene.end_time), number_text(draft.scene.frame_rate)));
+}
 
 void complete_root(SceneDraft& draft) {
   Scene& scene = draft.scene;
@@ -22,6 +49,8 @@ void complete_root(SceneDraft& draft) {
                             draft.document.name, number_text(norm(scene.gravity)),
                             norm(scene.gravity) / kEarthGravity));
   }
+  check_frame_count(draft);
+  limit_threads(draft);
   if (!draft.has("resolution", 0, "particles_per_cell")) {
     scene.resolution.particles_per_cell = scene.dimension == 3 ? 8 : 4;
   }
@@ -57,6 +86,9 @@ void complete_method(const SceneDraft& draft) {
 }
 
 void complete_limits(const SceneDraft& draft) {
+  if (draft.scene.limits.clip && !draft.scene.limits.box) {
+    draft.fail("limits", 0, "clip", "clip needs a box to clip to; give limits.box");
+  }
   if (const auto& box = draft.scene.limits.box) {
     for (int axis = 0; axis < draft.scene.dimension; ++axis) {
       if (box->lower[axis] < box->upper[axis]) continue;
@@ -64,6 +96,22 @@ void complete_limits(const SceneDraft& draft) {
                  fmt::format("box must have its lowest corner first; on axis {} got {} and {}", "xyz"[axis],
                              number_text(box->lower[axis]), number_text(box->upper[axis])));
     }
+  }
+}
+
+/// An angle that is allowed but looks as if it were given in radians.
+void warn_of_radians(const MaterialSettings& material) {
+  const ModelInfo* model = find_model(material.model);
+  if (model == nullptr) return;
+  for (const Parameter& parameter : model->parameters) {
+    if (parameter.unit != "degrees" || material.varied.contains(std::string(parameter.name))) continue;
+    const auto found = material.parameters.find(std::string(parameter.name));
+    if (found == material.parameters.end() || !(found->second > 0 && found->second < std::numbers::pi / 2)) continue;
+    log_warning(
+        fmt::format("material {}: {} is {} degrees; {} radians would be {:.3g} degrees: if that was meant, "
+                    "write {:.3g}",
+                    in_quotes(material.name), parameter.name, number_text(found->second), number_text(found->second),
+                    found->second * 180 / std::numbers::pi, found->second * 180 / std::numbers::pi));
   }
 }
 
@@ -77,6 +125,7 @@ void complete_materials(const SceneDraft& draft) {
                  fmt::format("preset {} has the model {}, got {}; leave out preset or model",
                              in_quotes(material.preset), in_quotes(preset->model), in_quotes(material.model)));
     }
+    warn_of_radians(material);
   }
 }
 
@@ -112,7 +161,8 @@ void check_file(const SceneDraft& draft, std::string_view section, std::size_t i
                 const std::string& file) {
   const std::filesystem::path path = draft.scene.locate(file);
   std::error_code ignored;
-  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored)) return;
+  // A pipe without a writer would block for ever.
+  if (std::filesystem::is_regular_file(path, ignored)) return;
   draft.fail(section, index, key,
              fmt::format("{} {} is not a file (looked for {}); paths start at the scene file's folder", key,
                          in_quotes(file), std::filesystem::absolute(path, ignored).lexically_normal().string()),

@@ -43,6 +43,10 @@ std::string Document::place(const Location& location) const {
 }
 
 std::string read_scene_text(const std::filesystem::path& path) {
+  if (path.empty()) {
+    throw Error(ErrorKind::files,
+                "the path of the scene file is empty; give a scene file, such as scenes/snow_cube.toml");
+  }
   std::error_code ignored;
   const std::string resolved = std::filesystem::absolute(path, ignored).lexically_normal().string();
   const std::string where =

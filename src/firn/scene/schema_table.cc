@@ -116,7 +116,8 @@ Section limits() {
       K("box", &LimitSettings::box)
           .unit("m")
           .default_text("none")
-          .help("Lowest and highest corner; a particle that leaves the box is parked."),
+          .help("Lowest and highest corner; a particle that leaves the box is parked. Bodies must start inside."),
+      K("clip", &LimitSettings::clip).help("Leave out what of the bodies is outside `box` at the start."),
   };
   return section;
 }

@@ -52,6 +52,7 @@ struct LimitSettings {
   std::optional<double> max_dt;  ///< s
   std::optional<double> speed;   ///< m/s
   std::optional<Box> box;
+  bool clip = false;  ///< bodies to the box
 };
 
 /// A model's parameter that differs between the particles of a material; fixed when they are placed.

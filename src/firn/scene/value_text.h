@@ -21,6 +21,9 @@ std::string in_quotes(std::string_view text);
 /// The text with control characters replaced by '?', for messages, which are single lines.
 std::string one_line(std::string_view text);
 
+/// Whether the text is UTF-8, as TOML and JSON want it: no overlong forms, no surrogates.
+bool is_utf8(std::string_view text);
+
 /// A key as TOML wants it: bare if possible, else quoted.
 std::string key_text(std::string_view key);
 

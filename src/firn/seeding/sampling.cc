@@ -36,8 +36,8 @@ void check_size(const Region<dim>& region, double radius, std::size_t count, con
                     name, width, region.bounds().largest_side(), radius));
   }
   if (width < 2) {
-    log_warning(fmt::format("{}: it is only {:.2g} sampling radii wide and gets {} samples; did you mean millimetres?",
-                            name, width, count));
+    log_warning(fmt::format("{}: it is only {:.2g} sampling radii wide and gets {} samples; is its unit right?", name,
+                            width, count));
   }
 }
 

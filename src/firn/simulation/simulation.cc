@@ -7,6 +7,7 @@
 #include <firn/measure/output_columns.h>
 #include <firn/scene/vary_parameters.h>
 #include <firn/simulation/checkpoint_state.h>
+#include <firn/simulation/endless_step.h>
 #include <firn/simulation/frame_state.h>
 #include <firn/simulation/runaways.h>
 #include <firn/simulation/simulation.h>
@@ -33,7 +34,7 @@ constexpr int kMaxTries = 3;
 template <class Real, int dim>
 class SimulationOf final : public Simulation {
  public:
-  explicit SimulationOf(const Scene& scene)
+  SimulationOf(const Scene& scene, const PlanCheck& check)
       : Simulation(scene),
         arena_(scene.threads > 0 ? scene.threads : static_cast<int>(tbb::task_arena::automatic)),
         guard_(scene.limits) {
@@ -44,7 +45,7 @@ class SimulationOf final : public Simulation {
           std::max<std::size_t>(static_cast<std::size_t>(scene.threads),
                                 tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
     }
-    auto built = build_world<Real, dim>(scene_);
+    auto built = build_world<Real, dim>(scene_, check);
     plan_ = std::move(built.plan);
     world_ = std::make_unique<World<Real, dim>>(std::move(built.world));
     set_limits();
@@ -65,6 +66,13 @@ class SimulationOf final : public Simulation {
   std::int64_t particle_count() const override { return static_cast<std::int64_t>(world_->particle_count()); }
   FrameReport report() const override { return report_; }
   VerbTimes verb_times() const override { return world_->verb_times; }
+
+  StepOutlook outlook() const override {
+    const TimeStep step = choose_step(world_->t, std::nullopt);
+    StepOutlook outlook = {step.dt, step.describe(material_names_)};
+    for (const auto& material : world_->materials) outlook.wave_speeds.push_back(material.wave_speed);
+    return outlook;
+  }
 
   TimeStep step() override {
     const double until = frame_time(frame_ + 1);
@@ -108,7 +116,7 @@ class SimulationOf final : public Simulation {
         report_.retries = attempt;
         return report_;
       }
-      if (!kept_ || attempt + 1 == kMaxTries) break;
+      if (!kept_ || attempt + 1 == kMaxTries || failure->cause == kTooFast) break;
       retry(*failure);
       promised.reset();
     }
@@ -330,12 +338,14 @@ class SimulationOf final : public Simulation {
     report_.removed = sources_->counts().removed;
   }
 
-  /// How long a step from time t is, of those that lead to the next event or to the end of the frame.
-  TimeStep choose_step(double t, double until) const {
+  /// How long a step from time t is, of those that lead to the next event or to the end of the frame; without `until`,
+  /// as long as it may be.
+  TimeStep choose_step(double t, std::optional<double> until) const {
     const auto bound = sources_->longest_step(*world_, t, limits_.particle_cfl);
     TimeStepLimits limits = limits_;
     limits.max_dt = std::min(limits_.max_dt, bound.dt);
-    TimeStep step = choose_time_step(*world_, limits, std::min(until, sources_->next_event(t)) - t);
+    TimeStep step = until ? choose_time_step(*world_, limits, std::min(*until, sources_->next_event(t)) - t)
+                          : choose_time_step(*world_, limits);
     if (step.limit == "max_dt" && bound.dt < limits_.max_dt) step.limit = bound.limit;
     return step;
   }
@@ -369,6 +379,10 @@ class SimulationOf final : public Simulation {
     TimeStep next = promised ? *promised : choose_step(world_->t, until);
     while (world_->t < until) {
       const TimeStep taken = next;
+      if (is_endless(taken, scene_.frame_rate)) {
+        note_step(taken, true);
+        return fastest_particle(*world_);
+      }
       bool drained = false, stop = false;
       sources_->set_pins(*world_);
       const StepReport step = step_explicit(*world_, taken.dt, [&] {
@@ -379,7 +393,7 @@ class SimulationOf final : public Simulation {
         drained = remaining < 1e-9 * taken.dt || guard_.may_park(*world_) || due;
         if (drained) return 0.0;
         next = choose_step(world_->t + taken.dt, until);
-        drained = !(next.dt > 0);
+        drained = !(next.dt > 0) || is_endless(next, scene_.frame_rate);
         // To stop drains the state as well, but the next step stays the one that is chosen here: the step after a pause
         // must be as long as without it.
         return stop ? 0.0 : next.dt;
@@ -414,6 +428,8 @@ class SimulationOf final : public Simulation {
 
   std::string describe(const ParticleFailure& failure, double dt) const {
     const auto& material = world_->materials[failure.material];
+    if (failure.cause == kTooFast)
+      return describe_endless(failure, material.name, report_.limit, world_->steps, world_->t, dt);
     Mat<double, dim> F;
     std::copy_n(failure.strain.begin(), dim * dim, F.e);
     Vec<double, dim> v;
@@ -453,14 +469,14 @@ std::int64_t Simulation::frame_count() const {
   return static_cast<std::int64_t>(std::floor(scene_.end_time * scene_.frame_rate * (1 + 1e-12))) + 1;
 }
 
-std::unique_ptr<Simulation> Simulation::create(const Scene& scene) {
+std::unique_ptr<Simulation> Simulation::create(const Scene& scene, const PlanCheck& check) {
   const bool single = scene.precision == Scene::Precision::single;
   if (scene.dimension == 2) {
-    if (single) return std::make_unique<SimulationOf<float, 2>>(scene);
-    return std::make_unique<SimulationOf<double, 2>>(scene);
+    if (single) return std::make_unique<SimulationOf<float, 2>>(scene, check);
+    return std::make_unique<SimulationOf<double, 2>>(scene, check);
   }
-  if (single) return std::make_unique<SimulationOf<float, 3>>(scene);
-  return std::make_unique<SimulationOf<double, 3>>(scene);
+  if (single) return std::make_unique<SimulationOf<float, 3>>(scene, check);
+  return std::make_unique<SimulationOf<double, 3>>(scene, check);
 }
 
 }  // namespace firn

@@ -43,6 +43,13 @@ struct FrameReport {
   std::vector<SourceCount> emitted = {}, removed = {};  ///< by each emitter and each sink
 };
 
+/// How the next step would be, and what makes it so.
+struct StepOutlook {
+  double dt = 0;                         ///< s, as long as the limits allow; infinite without particles
+  std::string limit;                     ///< what bounds it, as in FrameReport
+  std::vector<double> wave_speeds = {};  ///< fastest elastic wave of each material, m/s; 0 without particles
+};
+
 /// Asked after each step; true: stop there.
 using Pause = std::function<bool()>;
 
@@ -53,7 +60,8 @@ class Simulation {
   virtual ~Simulation() = default;
 
   /// Builds the scene's world: reads meshes, places particles. Error as load_scene and build_world.
-  static std::unique_ptr<Simulation> create(const Scene& scene);
+  /// @param check is shown the plan before a particle is placed; may be empty
+  static std::unique_ptr<Simulation> create(const Scene& scene, const PlanCheck& check = {});
 
   const Scene& scene() const { return scene_; }
   const WorldPlan& plan() const { return plan_; }
@@ -69,6 +77,9 @@ class Simulation {
   /// One step, as long as the limits allow but not beyond the next frame. Error(numerical) with a report if a particle
   /// fails.
   virtual TimeStep step() = 0;
+
+  /// Of the present state.
+  virtual StepOutlook outlook() const = 0;
 
   /// Steps to the next frame. If a particle fails, the frame is taken back, the limits are halved and it is computed
   /// again; after three tries Error(numerical) tells step, time, particle, its F, J and speed, the likely cause and
