@@ -1,15 +1,25 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that Firn builds and tests with; docs/dependencies.md says why each is here.
 # Does nothing, and needs no privileges, when all of them are present.
+#
+#   tools/install_dependencies.sh         what `make build` and `make test` need
+#   tools/install_dependencies.sh fuzz    and what `make fuzz` needs besides
 set -euo pipefail
 
 packages=(
   build-essential cmake ninja-build pkg-config git
   libhwy-dev libtbb-dev libfmt-dev libtomlplusplus-dev libmuparser-dev libcli11-dev nlohmann-json3-dev
-  libhdf5-dev libxxhash-dev libembree-dev libopenvdb-dev libpng-dev libstb-dev fonts-dejavu-core ffmpeg
+  libhdf5-dev libxxhash-dev libembree-dev libopenvdb-dev libassimp-dev libpng-dev libstb-dev fonts-dejavu-core ffmpeg
   libimgui-dev libglfw3-dev libepoxy-dev libgl1-mesa-dri libx11-dev xvfb
   libgtest-dev python3 python3-h5py
 )
+
+for group in "$@"; do
+  case "$group" in
+    fuzz) packages+=(clang-14 libclang-rt-14-dev) ;;
+    *) echo "firn: no group of packages is called $group; there is fuzz" >&2; exit 2 ;;
+  esac
+done
 
 missing=()
 for package in "${packages[@]}"; do
