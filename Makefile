@@ -2,8 +2,9 @@
 BUILD ?= build
 JOBS  ?= $(shell nproc)
 SCENE ?= scenes/snow_cube.toml
+FUZZ_SECONDS ?= 600
 
-.PHONY: all demo test test-clients verify build sanitize bench gallery format tidy dependencies clean
+.PHONY: all demo test test-clients verify build sanitize bench gallery fuzz format tidy dependencies clean
 
 all: build
 
@@ -41,6 +42,12 @@ bench: build ## particle-steps per second, bytes per particle and the time of ea
 gallery: build ## run every scene of scenes/gallery; writes docs/gallery.md and its pictures
 	tools/gallery.py --firn $(BUILD)/firn
 
+fuzz: ## search for inputs that break a reader: FUZZ_SECONDS for each target of tests/fuzz, with libFuzzer (docs/fuzzing.md)
+	@tools/install_dependencies.sh fuzz
+	cmake --preset fuzz
+	cmake --build build-fuzz --parallel $(JOBS)
+	tools/fuzz.py --seconds $(FUZZ_SECONDS)
+
 format: ## rewrite the sources in the project's layout
 	git ls-files 'src/*.h' 'src/*.cc' 'tests/*.h' 'tests/*.cc' | xargs clang-format -i
 
@@ -51,4 +58,4 @@ dependencies: ## install the Debian packages that are missing
 	@tools/install_dependencies.sh
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-sanitize
+	rm -rf $(BUILD) $(BUILD)-sanitize build-fuzz

@@ -18,6 +18,8 @@ pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(glfw REQUIRED IMPORTED_TARGET glfw3)
 pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
 
+pkg_check_modules(assimp REQUIRED IMPORTED_TARGET assimp)
+
 # Debian's FindOpenVDB.cmake asks for Boost and OpenEXR too, which Firn has no use for. Imath has OpenVDB's half floats.
 find_path(FIRN_OPENVDB_INCLUDE openvdb/openvdb.h REQUIRED)
 find_library(FIRN_OPENVDB_LIBRARY openvdb REQUIRED)

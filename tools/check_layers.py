@@ -30,6 +30,7 @@ ALLOWED = {
     "simulation": None,
     "render": ["core", "geometry", "state", "measure", "surface", "io"],
     "apps": None,
+    "reader": ["core", "geometry", "io"],
 }
 ORDER = list(ALLOWED)
 
@@ -38,7 +39,8 @@ LIBRARY_OWNERS = {
     "toml++/": ["scene"],
     "hdf5": ["io"],
     "embree": ["render"],
-    "openvdb/": ["io", "surface"],
+    "openvdb/": ["surface", "reader"],
+    "assimp/": ["reader"],
     "png.h": ["io", "render"],
     "stb/": ["render"],
     "muParser": ["core"],

@@ -4,12 +4,13 @@
 #
 #   tools/install_dependencies.sh            what `make build` and `make test` need
 #   tools/install_dependencies.sh clients    and what `make test-clients` needs besides: 0.3 GB of downloads, 1.7 GB of disk
+#   tools/install_dependencies.sh fuzz    and what `make fuzz` needs besides
 set -euo pipefail
 
 packages=(
   build-essential cmake ninja-build pkg-config git
   libhwy-dev libtbb-dev libfmt-dev libtomlplusplus-dev libmuparser-dev libcli11-dev nlohmann-json3-dev
-  libhdf5-dev libxxhash-dev libembree-dev libopenvdb-dev libpng-dev libstb-dev fonts-dejavu-core ffmpeg
+  libhdf5-dev libxxhash-dev libembree-dev libopenvdb-dev libassimp-dev libpng-dev libstb-dev fonts-dejavu-core ffmpeg
   libimgui-dev libglfw3-dev libepoxy-dev libgl1-mesa-dri libx11-dev xvfb
   libgtest-dev python3 python3-h5py
 )
@@ -17,7 +18,8 @@ packages=(
 for group in "$@"; do
   case "$group" in
     clients) packages+=(paraview python3-paraview blender python3-meshio python3-openvdb python3-numpy python3-venv) ;;
-    *) echo "firn: no group of packages is called $group; there is clients" >&2; exit 2 ;;
+    fuzz) packages+=(clang-14 libclang-rt-14-dev) ;;
+    *) echo "firn: no group of packages is called $group; there are clients and fuzz" >&2; exit 2 ;;
   esac
 done
 

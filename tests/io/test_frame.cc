@@ -1,4 +1,5 @@
 #include <firn/core/error.h>
+#include <firn/io/frame_image.h>
 #include <firn/io/frame_reader.h>
 #include <firn/io/frame_writer.h>
 #include <gtest/gtest.h>
@@ -91,6 +92,50 @@ TEST(Frame, WithoutParticlesIsLegal) {
   const TemporaryFolder folder;
   write_frame(folder / "frame.hdf", sample_snapshot(0), sample_metadata());
   expect_equal(read_frame(folder / "frame.hdf"), sample_snapshot(0));
+}
+
+/// A whole frame whose velocities are another dataset, of these extents and without values, with a right hash.
+std::string error_of_velocity(const std::vector<hsize_t>& extents) {
+  const auto original = frame_bytes(sample_snapshot(4), sample_metadata());
+  const auto bytes = hdf5::make_file([&](hid_t file) {
+    hdf5::open_image(original, [&](hid_t source) {
+      for (const char* name : {"VTKHDF", "Firn"}) {
+        hdf5::check(H5Ocopy(source, name, file, name, H5P_DEFAULT, H5P_DEFAULT), "copy");
+      }
+    });
+    H5Ldelete(file, "VTKHDF/PointData/velocity", H5P_DEFAULT);
+    const hdf5::Handle space(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), H5Sclose, "");
+    const hdf5::Handle made(
+        H5Dcreate2(file, "VTKHDF/PointData/velocity", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+        H5Dclose, "create");
+  });
+  return message_of([&] { parse_frame(bytes, "f.hdf"); });
+}
+
+// Found by the fuzz target `frame`.
+TEST(Frame, SizesThatTheFileCannotHoldAreRefused) {
+  const hsize_t particles = sample_snapshot(4).size();
+  EXPECT_NE(error_of_velocity({particles, 0}).find("could not use 0 components in the dataset velocity"),
+            std::string::npos);
+  EXPECT_NE(error_of_velocity({particles, hsize_t(1) << 32}).find("could not use 4294967296 components"),
+            std::string::npos);
+  // Else 200 rows of nothing would come out as zeros.
+  EXPECT_NE(error_of_velocity({particles, 200}).find("could not find the values of the dataset velocity in the file"),
+            std::string::npos);
+  EXPECT_NE(error_of_velocity({hsize_t(1) << 40, 3}).find("could not find 6 rows"), std::string::npos);
+}
+
+// HDF5 would take both for the same file.
+TEST(Frame, OneIsReadWhileAnotherIsMade) {
+  const auto first = frame_bytes(sample_snapshot(3), sample_metadata());
+  std::size_t read = 0;
+  const auto second = hdf5::make_file([&](hid_t file) {
+    hdf5::write_attribute(file, "beside", std::string("it"));
+    read = parse_frame(first, "f.hdf").size();
+    EXPECT_EQ(frame_bytes(sample_snapshot(3), sample_metadata()), first);
+  });
+  EXPECT_EQ(read, sample_snapshot(3).size());
+  hdf5::open_image(second, [](hid_t file) { EXPECT_EQ(hdf5::read_string_attribute(file, "beside"), "it"); });
 }
 
 TEST(Frame, TruncatedFileIsRefused) {

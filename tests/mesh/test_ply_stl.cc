@@ -96,6 +96,25 @@ TEST(PlyReader, ErrorsNameThePlace) {
             std::string::npos);
 }
 
+TEST(PlyReader, NamesAreDeclaredOnce) {
+  EXPECT_EQ(ply_error(replaced(kAsciiPly, "element edge 1", "element vertex 9")),
+            "m.ply:9:9: the element 'vertex' is declared twice");
+  EXPECT_EQ(ply_error(replaced(kAsciiPly, "property float y", "property float x")),
+            "m.ply:8:16: the property 'x' is declared twice");
+  EXPECT_EQ(ply_error(replaced(kAsciiPly, "property int a", "property int")),
+            "m.ply:10:13: the name of the property is missing");
+  const std::string painted = replaced(kAsciiPly, "property uchar red", "property uchar y");
+  EXPECT_EQ(message_of([&] { parse_painted_ply(painted, "m.ply", "y"); }),
+            "m.ply:8:16: the property 'y' is declared twice");
+}
+
+TEST(PlyReader, MessagesHoldNoControlCharacters) {
+  EXPECT_EQ(ply_error("ply\n\x1b[31mred\n"), "m.ply:2:1: unknown word '?[31mred' in the PLY header");
+  EXPECT_EQ(ply_error(replaced(kAsciiPly, "uchar red", "uchar\x07 red")), "m.ply:5:10: unknown PLY type 'uchar?'");
+  EXPECT_EQ(ply_error(replaced(kAsciiPly, "uchar red", "uchar red\x1b")),
+            "m.ply:5:16: 'red?' is no name of a PLY property");
+}
+
 std::string binary_stl(const TriangleMesh& mesh) {
   std::string bytes = "solid but binary";
   bytes.resize(80, ' ');
@@ -139,6 +158,8 @@ TEST(StlReader, ErrorsNameThePlace) {
             "m.stl:14:2: the file ends where 'endloop' should follow; it seems truncated");
   EXPECT_EQ(stl_error(replaced(kAsciiStl, "outer", "inner")), "m.stl:3:1: expected 'outer', got 'inner'");
   EXPECT_EQ(stl_error("solid x\nendsolid x\n"), "m.stl: the file has no triangles");
+
+  EXPECT_EQ(stl_error(replaced(kAsciiStl, "outer", "\x1b[m")), "m.stl:3:1: expected 'outer', got '?[m'");
 
   std::string binary = binary_stl(box_mesh({{1, 1, 1}}));
   binary[0] = 'x';

@@ -1,7 +1,7 @@
 #include <firn/apps/commands.h>
 #include <firn/apps/machine.h>
 #include <firn/core/simd.h>
-#include <firn/io/vdb_file.h>
+#include <firn/io/foreign_reader.h>
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
@@ -60,7 +60,10 @@ void run_doctor() {
   line("ffmpeg",
        ffmpeg.empty() ? "missing: pictures are made, but no films; install the package ffmpeg" : ffmpeg.string());
   line("hdf5", hdf5_version());
-  line("openvdb", openvdb_version());
+  const std::vector<std::string> libraries = foreign_libraries();
+  line("reader", libraries.empty()
+                     ? "missing: files of other programs cannot be opened; firn-reader belongs beside firn"
+                     : fmt::format("{}", fmt::join(libraries, ", ")));
   line("embree", embree_version());
   line("tbb", TBB_runtime_version());
 }

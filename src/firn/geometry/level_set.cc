@@ -142,18 +142,6 @@ LevelSet::LevelSet(Data data) : data_(std::move(data)) {
   if (!is_consistent(data_)) throw Error(ErrorKind::files, "level set: its parts do not fit together");
 }
 
-bool LevelSet::is_consistent(const Data& data) {
-  std::size_t blocks = 1;
-  for (const std::int32_t n : data.blocks) {
-    if (n <= 0 || blocks > kMostBlocks) return false;
-    blocks *= static_cast<std::size_t>(n);
-  }
-  if (!(data.cell > 0) || data.center.size() != blocks || data.fine.size() != blocks) return false;
-  return data.nodes.size() % kNodes == 0 && std::all_of(data.fine.begin(), data.fine.end(), [&](std::int32_t f) {
-           return f < 0 || static_cast<std::size_t>(f) < data.nodes.size() / kNodes;
-         });
-}
-
 std::size_t LevelSet::flat(const std::int32_t (&b)[3]) const {
   return (static_cast<std::size_t>(b[0]) * static_cast<std::size_t>(data_.blocks[1]) + static_cast<std::size_t>(b[1])) *
              static_cast<std::size_t>(data_.blocks[2]) +

@@ -127,7 +127,7 @@ CheckpointColumn read_column(hid_t group, const std::string& name, std::size_t p
   column.name = name;
   const Handle dataset(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose, "find the dataset " + name);
   const std::vector<hsize_t> size = hdf5::extents(dataset);
-  if (size.size() != 2 || size[1] != particles || size[0] > 1000) {
+  if (size.size() != 2 || size[1] != particles || size[0] < 1 || size[0] > 1000) {
     throw Failure{fmt::format("find {} particles in the dataset {}", particles, name)};
   }
   column.components = static_cast<std::size_t>(size[0]);
@@ -201,24 +201,24 @@ Checkpoint read_all(hid_t file) {
   return checkpoint;
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
-  throw Error(ErrorKind::files, fmt::format("{}: cannot use the checkpoint: {}", path.string(), why));
+[[noreturn]] void refuse(const std::string& name, const std::string& why) {
+  throw Error(ErrorKind::files, fmt::format("{}: cannot use the checkpoint: {}", name, why));
 }
 
-std::vector<std::byte> read_stamped(const std::filesystem::path& path, const CheckpointStamp& stamp) {
+[[noreturn]] void refuse_size(const std::string& name, std::uintmax_t found, const CheckpointStamp& stamp) {
+  refuse(name, fmt::format("it is {} bytes long, and run.json says {}", found, stamp.bytes));
+}
+
+std::vector<std::byte> read_bytes(const std::filesystem::path& path, const CheckpointStamp& stamp) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) refuse(path, "it is a folder");
+  if (std::filesystem::is_directory(path, error)) refuse(path.string(), "it is a folder");
   const auto size = std::filesystem::file_size(path, error);
-  if (error) refuse(path, error.message());
-  if (size != stamp.bytes) refuse(path, fmt::format("it is {} bytes long, and run.json says {}", size, stamp.bytes));
+  if (error) refuse(path.string(), error.message());
+  if (size != stamp.bytes) refuse_size(path.string(), size, stamp);
   std::vector<std::byte> bytes(stamp.bytes);
   std::ifstream stream(path, std::ios::binary);
   if (!stream || !stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
-    refuse(path, std::strerror(errno));
-  }
-  if (const CheckpointStamp found = stamp_of(text_of(bytes)); found != stamp) {
-    refuse(path, fmt::format("its hash is {}, and run.json says {}: it was damaged or changed after it was written",
-                             found.hash, stamp.hash));
+    refuse(path.string(), std::strerror(errno));
   }
   return bytes;
 }
@@ -229,29 +229,46 @@ CheckpointStamp stamp_of(std::string_view bytes) {
   return {bytes.size(), fmt::format("{:016x}", XXH3_64bits_withSeed(bytes.data(), bytes.size(), kSeed))};
 }
 
+std::vector<std::byte> checkpoint_bytes(const Checkpoint& checkpoint) {
+  const hdf5::SilencedErrors silenced;
+  try {
+    return hdf5::make_file([&](hid_t file) { write_all(file, checkpoint); });
+  } catch (const Failure& failure) {
+    throw Error(ErrorKind::files, fmt::format("cannot make the checkpoint: HDF5 could not {}", failure.what));
+  }
+}
+
 CheckpointStamp write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
   std::vector<std::byte> bytes;
   try {
-    const hdf5::SilencedErrors silenced;
-    bytes = hdf5::make_file([&](hid_t file) { write_all(file, checkpoint); });
-  } catch (const Failure& failure) {
-    throw Error(ErrorKind::files,
-                fmt::format("{}: cannot make the checkpoint: HDF5 could not {}", path.string(), failure.what));
+    bytes = checkpoint_bytes(checkpoint);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::usage) throw;
+    throw Error(error.kind(), fmt::format("{}: {}", path.string(), error.what()));
   }
   write_file_atomically(path, text_of(bytes), Durability::synced);
   return stamp_of(text_of(bytes));
 }
 
-Checkpoint read_checkpoint(const std::filesystem::path& path, const CheckpointStamp& stamp) {
-  const std::vector<std::byte> bytes = read_stamped(path, stamp);
+Checkpoint parse_checkpoint(const std::vector<std::byte>& bytes, const CheckpointStamp& stamp,
+                            const std::string& name) {
+  if (bytes.size() != stamp.bytes) refuse_size(name, bytes.size(), stamp);
+  if (const CheckpointStamp found = stamp_of(text_of(bytes)); found != stamp) {
+    refuse(name, fmt::format("its hash is {}, and run.json says {}: it was damaged or changed after it was written",
+                             found.hash, stamp.hash));
+  }
   try {
     const hdf5::SilencedErrors silenced;
     Checkpoint checkpoint;
     hdf5::open_image(bytes, [&](hid_t file) { checkpoint = read_all(file); });
     return checkpoint;
   } catch (const Failure& failure) {
-    refuse(path, fmt::format("could not {}", failure.what));
+    refuse(name, fmt::format("could not {}", failure.what));
   }
+}
+
+Checkpoint read_checkpoint(const std::filesystem::path& path, const CheckpointStamp& stamp) {
+  return parse_checkpoint(read_bytes(path, stamp), stamp, path.string());
 }
 
 }  // namespace firn

@@ -1,5 +1,6 @@
 #include <firn/core/error.h>
 #include <firn/io/file_sequence.h>
+#include <firn/io/shown_text.h>
 #include <fmt/format.h>
 
 #include <charconv>
@@ -35,7 +36,7 @@ std::optional<std::int64_t> number_in(std::string_view name, std::string_view pr
 std::vector<fs::path> expand_sequence(const fs::path& pattern) {
   const std::string name = pattern.filename().string();
   const auto fail = [&](ErrorKind kind, const std::string& what) {
-    throw Error(kind, fmt::format("{}: {}", pattern.string(), what));
+    throw Error(kind, one_line(fmt::format("{}: {}", pattern.string(), what)));
   };
   if (pattern.parent_path().string().find('#') != std::string::npos) {
     fail(ErrorKind::usage, "# must be in the file's name, not in a folder's");
@@ -65,7 +66,10 @@ std::vector<fs::path> expand_sequence(const fs::path& pattern) {
                                        end - begin, name.substr(begin, end - begin)));
   }
   std::vector<fs::path> files;
-  for (std::int64_t number = found.begin()->first; const auto& [next, file] : found) {
+  // Unsigned: the largest number may be the last.
+  for (std::uint64_t number = static_cast<std::uint64_t>(found.begin()->first);
+       const auto& [found_number, file] : found) {
+    const auto next = static_cast<std::uint64_t>(found_number);
     if (next != number) {
       fail(ErrorKind::files,
            fmt::format("{} missing between {} and {}; a sequence needs every number, or list the files and their times",

@@ -159,7 +159,7 @@ std::vector<std::string> read_strings(hid_t group, const std::string& name) {
   const Handle type(H5Dget_type(dataset), H5Tclose, "read the dataset " + name);
   const std::size_t length = fixed_length(type, name);
   if (size.size() != 1) throw Failure{"find a list in the dataset " + name};
-  std::vector<char> bytes(static_cast<std::size_t>(size[0]) * length);
+  std::vector<char> bytes(value_count(dataset, name) * length);
   if (!bytes.empty()) {
     check(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()), "read the dataset " + name);
   }
@@ -175,6 +175,21 @@ std::vector<hsize_t> extents(hid_t dataset) {
   std::vector<hsize_t> size(static_cast<std::size_t>(rank));
   H5Sget_simple_extent_dims(space, size.data(), nullptr);
   return size;
+}
+
+std::size_t value_count(hid_t dataset, const std::string& name) {
+  const Handle type(H5Dget_type(dataset), H5Tclose, "read the type of " + name);
+  // Deflate makes of 1032 equal bytes one at best.
+  constexpr hsize_t kBestCompression = 1032;
+  const hsize_t most = H5Dget_storage_size(dataset) * kBestCompression / std::max<hsize_t>(1, H5Tget_size(type));
+  const std::vector<hsize_t> lengths = extents(dataset);
+  if (std::ranges::find(lengths, hsize_t(0)) != lengths.end()) return 0;
+  hsize_t count = 1;
+  for (const hsize_t length : lengths) {
+    if (count > most / length) throw Failure{"find the values of the dataset " + name + " in the file"};
+    count *= length;
+  }
+  return static_cast<std::size_t>(count);
 }
 
 }  // namespace firn::hdf5

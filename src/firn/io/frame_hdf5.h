@@ -114,11 +114,14 @@ std::vector<std::string> read_strings(hid_t group, const std::string& name);
 /// Lengths along each axis of a dataset.
 std::vector<hsize_t> extents(hid_t dataset);
 
+/// Of all axes together. Throws Failure if so many values cannot lie in the dataset's part of the file: a few bytes may
+/// declare any number, and memory is taken for it before anything is read.
+std::size_t value_count(hid_t dataset, const std::string& name);
+
 /// All values of a dataset. Throws Failure if their count is not `count` or a checksum does not match.
 template <class T>
 std::vector<T> read_values(hid_t dataset, std::size_t count, const std::string& name) {
-  std::size_t stored = 1;
-  for (const hsize_t length : extents(dataset)) stored *= static_cast<std::size_t>(length);
+  const std::size_t stored = value_count(dataset, name);
   if (stored != count) throw Failure{"find " + std::to_string(count) + " values in the dataset " + name};
   std::vector<T> values(count);
   if (count > 0) {
@@ -130,9 +133,7 @@ std::vector<T> read_values(hid_t dataset, std::size_t count, const std::string& 
 template <class T>
 std::vector<T> read_values(hid_t group, const char* name) {
   const Handle dataset(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, std::string("open the dataset ") + name);
-  std::size_t stored = 1;
-  for (const hsize_t length : extents(dataset)) stored *= static_cast<std::size_t>(length);
-  return read_values<T>(dataset, stored, name);
+  return read_values<T>(dataset, value_count(dataset, name), name);
 }
 
 }  // namespace firn::hdf5

@@ -4,7 +4,9 @@
 #include <xxhash.h>
 
 #include <array>
+#include <atomic>
 #include <cstring>
+#include <string>
 #include <utility>
 
 namespace firn::hdf5 {
@@ -41,6 +43,13 @@ herr_t release(void*, H5FD_file_image_op_t, void*) { return 0; }
 void* share(void* data) { return data; }
 herr_t unshare(void*) { return 0; }
 
+/// HDF5 takes two files in memory for the same one if they have the same name: what is read while another is made would
+/// be that one.
+std::string unused_name() {
+  static std::atomic<std::uint64_t> count = 0;
+  return "image " + std::to_string(count++);
+}
+
 constexpr std::size_t kGrowth = std::size_t(1) << 20;
 
 constexpr char kMagic[8] = {'F', 'I', 'R', 'N', 'X', 'X', 'H', '3'};
@@ -71,7 +80,7 @@ std::vector<std::byte> make_file(const std::function<void(hid_t file)>& fill) {
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "create a property list");
   check(H5Pset_obj_track_times(creation, false), "switch time stamps off");
 
-  Handle file(H5Fcreate("frame", H5F_ACC_TRUNC, creation, access), H5Fclose, "create the file");
+  Handle file(H5Fcreate(unused_name().c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose, "create the file");
   fill(file);
   check(H5Fflush(file, H5F_SCOPE_GLOBAL), "flush the file");
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
@@ -92,7 +101,7 @@ void open_image(const std::vector<std::byte>& bytes, const std::function<void(hi
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "create a property list");
   check(H5Pset_fapl_core(access, kGrowth, false), "open the file in memory");
   check(H5Pset_file_image(access, const_cast<std::byte*>(bytes.data()), size), "open the file in memory");
-  const Handle file(H5Fopen("frame", H5F_ACC_RDONLY, access), H5Fclose, "open it");
+  const Handle file(H5Fopen(unused_name().c_str(), H5F_ACC_RDONLY, access), H5Fclose, "open it");
   read(file);
 }
 

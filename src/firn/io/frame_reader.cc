@@ -16,6 +16,9 @@ namespace {
 using hdf5::Failure;
 using hdf5::Handle;
 
+/// More than any column has; far less than what an int holds.
+constexpr hsize_t kMostComponents = 1000;
+
 Handle open_group(hid_t parent, const char* name) {
   return Handle(H5Gopen2(parent, name, H5P_DEFAULT), H5Gclose, std::string("find the group ") + name);
 }
@@ -44,6 +47,9 @@ void read_column(hid_t group, const char* dataset_name, std::size_t particles, S
   const std::vector<hsize_t> size = hdf5::extents(dataset);
   if (size.empty() || size.size() > 2 || size[0] != particles) {
     throw Failure{fmt::format("find {} rows in the dataset {}", particles, dataset_name)};
+  }
+  if (size.size() == 2 && (size[1] < 1 || size[1] > kMostComponents)) {
+    throw Failure{fmt::format("use {} components in the dataset {}", size[1], dataset_name)};
   }
   column->components = size.size() == 2 ? static_cast<int>(size[1]) : 1;
   read_stored_type(dataset, particles * static_cast<std::size_t>(column->components), column);
@@ -130,27 +136,29 @@ std::vector<std::byte> read_bytes(const std::filesystem::path& path) {
   if (!stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
     throw Error(ErrorKind::files, fmt::format("{}: cannot read the frame: {}", path.string(), std::strerror(errno)));
   }
-  if (bytes.size() < 8 || std::memcmp(bytes.data(), "\x89HDF\r\n\x1a\n", 8) != 0) {
-    throw Error(ErrorKind::files,
-                fmt::format("{}: not a frame of Firn: the file does not begin as HDF5", path.string()));
-  }
   return bytes;
 }
 
 }  // namespace
 
-Snapshot read_frame(const std::filesystem::path& path, FrameMetadata* metadata) {
-  const std::vector<std::byte> bytes = read_bytes(path);
+Snapshot parse_frame(const std::vector<std::byte>& bytes, const std::string& name, FrameMetadata* metadata) {
+  if (bytes.size() < 8 || std::memcmp(bytes.data(), "\x89HDF\r\n\x1a\n", 8) != 0) {
+    throw Error(ErrorKind::files, fmt::format("{}: not a frame of Firn: the file does not begin as HDF5", name));
+  }
   try {
     const hdf5::SilencedErrors silenced;
     Snapshot snapshot;
     hdf5::open_image(bytes, [&](hid_t file) { snapshot = read_open_file(file, metadata); });
     return snapshot;
   } catch (const Failure& failure) {
-    throw Error(ErrorKind::files,
-                fmt::format("{}: damaged, or not a frame of Firn: could not {}; compute the frame again", path.string(),
-                            failure.what));
+    throw Error(
+        ErrorKind::files,
+        fmt::format("{}: damaged, or not a frame of Firn: could not {}; compute the frame again", name, failure.what));
   }
+}
+
+Snapshot read_frame(const std::filesystem::path& path, FrameMetadata* metadata) {
+  return parse_frame(read_bytes(path), path.string(), metadata);
 }
 
 }  // namespace firn

@@ -143,18 +143,26 @@ void write_firn_group(hid_t file, const Snapshot& snapshot, const FrameMetadata&
 
 std::string frame_file_name(std::int64_t frame) { return fmt::format("particles.{:04}.hdf", frame); }
 
-void write_frame(const std::filesystem::path& path, const Snapshot& snapshot, const FrameMetadata& metadata) {
+std::vector<std::byte> frame_bytes(const Snapshot& snapshot, const FrameMetadata& metadata) {
   require_consistent(snapshot);
-  std::vector<std::byte> bytes;
+  const hdf5::SilencedErrors silenced;
   try {
-    const hdf5::SilencedErrors silenced;
-    bytes = hdf5::make_file([&](hid_t file) {
+    return hdf5::make_file([&](hid_t file) {
       write_vtk_group(file, snapshot);
       write_firn_group(file, snapshot, metadata);
     });
   } catch (const hdf5::Failure& failure) {
-    throw Error(ErrorKind::files,
-                fmt::format("{}: cannot make the frame: HDF5 could not {}", path.string(), failure.what));
+    throw Error(ErrorKind::files, fmt::format("cannot make the frame: HDF5 could not {}", failure.what));
+  }
+}
+
+void write_frame(const std::filesystem::path& path, const Snapshot& snapshot, const FrameMetadata& metadata) {
+  std::vector<std::byte> bytes;
+  try {
+    bytes = frame_bytes(snapshot, metadata);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::usage) throw;
+    throw Error(error.kind(), fmt::format("{}: {}", path.string(), error.what()));
   }
   write_file_atomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, Durability::synced);
 }

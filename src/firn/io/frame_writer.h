@@ -3,7 +3,10 @@
 #include <firn/io/frame_metadata.h>
 #include <firn/state/snapshot.h>
 
+#include <cstddef>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace firn {
 
@@ -21,5 +24,7 @@ std::string frame_file_name(std::int64_t frame);
 /// Throws Error (files) with the system's reason, and Error (usage) if a column does not have the size of the snapshot
 /// or "position" is not first.
 void write_frame(const std::filesystem::path& path, const Snapshot& snapshot, const FrameMetadata& metadata);
+/// The bytes of that file. Throws Error (files) if HDF5 cannot make them, and Error (usage) likewise.
+std::vector<std::byte> frame_bytes(const Snapshot& snapshot, const FrameMetadata& metadata);
 
 }  // namespace firn

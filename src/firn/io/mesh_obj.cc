@@ -1,3 +1,4 @@
+#include <firn/core/error.h>
 #include <firn/io/mesh_parsers.h>
 #include <firn/io/mesh_text.h>
 #include <fmt/format.h>
@@ -113,5 +114,23 @@ class ObjParser {
 }  // namespace
 
 ObjFile parse_obj(std::string_view bytes, const std::string& name) { return ObjParser(bytes, name).parse(); }
+
+void add_fan(const std::int32_t* corners, std::size_t count, TriangleMesh& mesh) {
+  for (std::size_t i = 2; i < count; ++i) mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+}
+
+TriangleMesh triangulate(const ObjFile& file, const std::string& name) {
+  TriangleMesh mesh;
+  mesh.vertices = file.vertices;
+  for (std::size_t i = 0, begin = 0; i < file.face_ends.size(); begin = file.face_ends[i++]) {
+    add_fan(file.corners.data() + begin, file.face_ends[i] - begin, mesh);
+  }
+  if (mesh.triangles.empty()) {
+    const char* hint = file.segments.empty() ? "" : "; its lines are an outline for a 2D scene";
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: the file has {} vertices but no faces{}", name, file.vertices.size(), hint));
+  }
+  return mesh;
+}
 
 }  // namespace firn

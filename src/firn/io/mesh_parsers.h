@@ -21,6 +21,8 @@ struct ObjFile {
 };
 
 ObjFile parse_obj(std::string_view bytes, const std::string& name);
+/// The faces of the file as triangles. Throws Error (usage) if it has none.
+TriangleMesh triangulate(const ObjFile& file, const std::string& name);
 TriangleMesh parse_ply(std::string_view bytes, const std::string& name);
 /// With the scalar property `attribute` of its vertices.
 PaintedMesh parse_painted_ply(std::string_view bytes, const std::string& name, const std::string& attribute);

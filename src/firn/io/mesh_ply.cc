@@ -1,6 +1,7 @@
 #include <firn/core/error.h>
 #include <firn/io/mesh_parsers.h>
 #include <firn/io/mesh_text.h>
+#include <firn/io/shown_text.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -56,7 +57,7 @@ Scalar read_scalar(TextScanner& scanner) {
   for (const ScalarName& entry : kScalarNames) {
     if (entry.name == word) return entry.scalar;
   }
-  scanner.fail(fmt::format("unknown PLY type '{}'", word.substr(0, 40)));
+  scanner.fail(fmt::format("unknown PLY type '{}'", shown_text(word)));
 }
 
 Format read_format(TextScanner& scanner) {
@@ -64,19 +65,32 @@ Format read_format(TextScanner& scanner) {
   if (word == "ascii") return Format::ascii;
   if (word == "binary_little_endian") return Format::little_endian;
   if (word == "binary_big_endian") return Format::big_endian;
-  scanner.fail(fmt::format("unknown PLY format '{}'", word.substr(0, 40)));
+  scanner.fail(fmt::format("unknown PLY format '{}'", shown_text(word)));
 }
 
-Element read_element(TextScanner& scanner) {
+/// Names stand in messages, and two of one name would leave open which is meant.
+template <class Named>
+std::string read_name(TextScanner& scanner, const std::vector<Named>& before, std::string_view what) {
+  const std::string name(scanner.word());
+  if (name.empty()) scanner.fail(fmt::format("the name of the {} is missing", what));
+  if (std::ranges::any_of(name, is_control))
+    scanner.fail(fmt::format("'{}' is no name of a PLY {}", shown_text(name), what));
+  if (std::ranges::find(before, name, &Named::name) != before.end()) {
+    scanner.fail(fmt::format("the {} '{}' is declared twice", what, name));
+  }
+  return name;
+}
+
+Element read_element(TextScanner& scanner, const std::vector<Element>& before) {
   Element element;
-  element.name = scanner.word();
+  element.name = read_name(scanner, before, "element");
   const std::int64_t count = scanner.integer("number of elements");
   if (count < 0) scanner.fail(fmt::format("number of elements must not be negative, got {}", count));
   element.count = static_cast<std::size_t>(count);
   return element;
 }
 
-Property read_property(TextScanner& scanner) {
+Property read_property(TextScanner& scanner, const std::vector<Property>& before) {
   Property property;
   // Only `list` is not a type, and looking ahead needs no more than a copy of the scanner.
   TextScanner ahead = scanner;
@@ -88,7 +102,7 @@ Property read_property(TextScanner& scanner) {
     }
   }
   property.scalar = read_scalar(scanner);
-  property.name = scanner.word();
+  property.name = read_name(scanner, before, "property");
   return property;
 }
 
@@ -103,15 +117,16 @@ Header read_header(TextScanner& scanner) {
       header.format = read_format(scanner);
       has_format = true;
     } else if (keyword == "element") {
-      header.elements.push_back(read_element(scanner));
+      header.elements.push_back(read_element(scanner, header.elements));
     } else if (keyword == "property") {
       if (header.elements.empty()) scanner.fail("a property before the first element");
-      header.elements.back().properties.push_back(read_property(scanner));
+      std::vector<Property>& properties = header.elements.back().properties;
+      properties.push_back(read_property(scanner, properties));
     } else if (keyword == "end_header") {
       if (!has_format) scanner.fail("the header has no line 'format'");
       return header;
     } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
-      scanner.fail(fmt::format("unknown word '{}' in the PLY header", keyword.substr(0, 40)));
+      scanner.fail(fmt::format("unknown word '{}' in the PLY header", shown_text(keyword)));
     }
   }
   scanner.fail("the header has no line 'end_header'; the file seems truncated");

@@ -1,6 +1,8 @@
 #include <firn/core/error.h>
+#include <firn/io/foreign_reader.h>
 #include <firn/io/mesh_parsers.h>
 #include <firn/io/mesh_reader.h>
+#include <firn/io/shown_text.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,11 +24,38 @@ namespace fs = std::filesystem;
   throw Error(ErrorKind::files, message);
 }
 
-std::string read_bytes(const fs::path& path) {
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+File opened(const fs::path& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) fail_to_read(path, EISDIR);
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  File file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) fail_to_read(path, errno);
+  return file;
+}
+
+/// The kinds of assimp that other modelling programs write.
+constexpr std::string_view kForeignMeshes[] = {".3ds", ".3mf", ".ac",   ".amf", ".ase", ".b3d", ".dae", ".dxf",
+                                               ".fbx", ".glb", ".gltf", ".lwo", ".off", ".x",   ".x3d", ".zae"};
+
+/// In a process of its own (io/foreign_reader.h), which gives the mesh as PLY.
+TriangleMesh read_foreign_mesh(const fs::path& path) {
+  if (std::fgetc(opened(path).get()) == EOF) throw Error(ErrorKind::usage, path.string() + ": the file is empty");
+  TriangleMesh mesh;
+  read_foreign_files({"mesh"}, {path}, [&](std::size_t, const std::string& answer) {
+    try {
+      mesh = parse_ply(answer, "its answer");
+    } catch (const Error& error) {
+      throw Error(ErrorKind::files, fmt::format("{}: the reader made no mesh of it ({}); export it as OBJ, PLY or STL",
+                                                path.string(), error.what()));
+    }
+  });
+  return mesh;
+}
+
+std::string read_bytes(const fs::path& path) {
+  const File file = opened(path);
+  std::error_code error;
   std::string bytes;
   const auto size = fs::file_size(path, error);
   if (!error) bytes.reserve(size);
@@ -47,32 +76,17 @@ std::string extension(const fs::path& path) {
   return result;
 }
 
-TriangleMesh triangulate(const ObjFile& file, const std::string& name) {
-  TriangleMesh mesh;
-  mesh.vertices = file.vertices;
-  for (std::size_t i = 0, begin = 0; i < file.face_ends.size(); begin = file.face_ends[i++]) {
-    add_fan(file.corners.data() + begin, file.face_ends[i] - begin, mesh);
-  }
-  if (mesh.triangles.empty()) {
-    const char* hint = file.segments.empty() ? "" : "; its lines are an outline for a 2D scene";
-    throw Error(ErrorKind::usage,
-                fmt::format("{}: the file has {} vertices but no faces{}", name, file.vertices.size(), hint));
-  }
-  return mesh;
-}
-
 }  // namespace
-
-void add_fan(const std::int32_t* corners, std::size_t count, TriangleMesh& mesh) {
-  for (std::size_t i = 2; i < count; ++i) mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
-}
 
 TriangleMesh read_mesh(const fs::path& path) {
   const std::string name = path.string(), kind = extension(path);
-  if (kind != ".obj" && kind != ".ply" && kind != ".stl") {
-    throw Error(ErrorKind::usage,
-                fmt::format("{}: unknown kind of mesh '{}'; Firn reads .obj, .ply and .stl", name, kind));
+  const bool is_foreign = std::ranges::find(kForeignMeshes, kind) != std::end(kForeignMeshes);
+  if (kind != ".obj" && kind != ".ply" && kind != ".stl" && !is_foreign) {
+    throw Error(ErrorKind::usage, fmt::format("{}: unknown kind of mesh '{}'; Firn reads .obj, .ply and .stl, and with "
+                                              "assimp {}",
+                                              name, shown_text(kind), fmt::join(kForeignMeshes, " ")));
   }
+  if (is_foreign) return read_foreign_mesh(path);
   const std::string bytes = read_bytes(path);
   if (kind == ".obj") return triangulate(parse_obj(bytes, name), name);
   return kind == ".ply" ? parse_ply(bytes, name) : parse_stl(bytes, name);

@@ -13,6 +13,8 @@ namespace firn {
 /// - .ply: ascii, binary_little_endian or binary_big_endian, any order of properties; faces from the list property
 ///   vertex_indices or vertex_index.
 /// - .stl: ascii or binary. Corners at exactly the same position become one vertex.
+/// - .gltf, .glb, .fbx, .dae, .3mf, .3ds and more: through assimp, in a process of its own (io/foreign_reader.h), as
+///   reader/foreign_mesh.h says.
 ///
 /// The result has at least one triangle, its indices are valid, its coordinates finite; nothing else is promised
 /// (prepare_mesh() judges the surface). Numbers are read the same way in every locale.

@@ -1,6 +1,7 @@
 #include <firn/core/error.h>
 #include <firn/io/mesh_parsers.h>
 #include <firn/io/mesh_text.h>
+#include <firn/io/shown_text.h>
 #include <fmt/format.h>
 
 #include <bit>
@@ -57,7 +58,7 @@ std::string lower(std::string_view text) {
 
 void expect(TextScanner& scanner, std::string_view wanted) {
   const std::string found = lower(scanner.word_across_lines(fmt::format("'{}'", wanted)));
-  if (found != wanted) scanner.fail(fmt::format("expected '{}', got '{}'", wanted, found.substr(0, 40)));
+  if (found != wanted) scanner.fail(fmt::format("expected '{}', got '{}'", wanted, shown_text(found)));
 }
 
 void parse_ascii_facet(TextScanner& scanner, TriangleMesh& mesh) {
@@ -86,7 +87,7 @@ TriangleMesh parse_ascii(std::string_view bytes, const std::string& name) {
   while (scanner.next_line()) {
     std::string keyword = lower(scanner.word());
     if (keyword.empty()) continue;
-    if (keyword != "solid") scanner.fail(fmt::format("expected 'solid', got '{}'", keyword.substr(0, 40)));
+    if (keyword != "solid") scanner.fail(fmt::format("expected 'solid', got '{}'", shown_text(keyword)));
     scanner.next_line();  // the rest of the line is a name
     for (keyword = lower(scanner.word_across_lines("'facet' or 'endsolid'")); keyword == "facet";
          keyword = lower(scanner.word_across_lines("'facet' or 'endsolid'"))) {
@@ -94,7 +95,7 @@ TriangleMesh parse_ascii(std::string_view bytes, const std::string& name) {
       add_facet_of_last_three(mesh, name);
     }
     if (keyword != "endsolid")
-      scanner.fail(fmt::format("expected 'facet' or 'endsolid', got '{}'", keyword.substr(0, 40)));
+      scanner.fail(fmt::format("expected 'facet' or 'endsolid', got '{}'", shown_text(keyword)));
   }
   return mesh;
 }

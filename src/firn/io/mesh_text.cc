@@ -1,5 +1,6 @@
 #include <firn/core/error.h>
 #include <firn/io/mesh_text.h>
+#include <firn/io/shown_text.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,13 +15,6 @@ constexpr std::size_t kLongestLine = std::size_t(16) << 20;
 
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
-
-/// The text as it can stand in a one-line message.
-std::string shown(std::string_view text) {
-  std::string result;
-  for (const char c : text.substr(0, 40)) result += static_cast<unsigned char>(c) < 32 ? '?' : c;
-  return text.size() > 40 ? result + "..." : result;
-}
 
 }  // namespace
 
@@ -134,15 +128,15 @@ double TextScanner::to_number(std::string_view text, std::string_view what) cons
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (code == std::errc::invalid_argument || end != digits.data() + digits.size()) {
     const bool comma = text.find(',') != std::string_view::npos;
-    fail(fmt::format("{} is not a number: '{}'{}", what, shown(text),
+    fail(fmt::format("{} is not a number: '{}'{}", what, shown_text(text),
                      comma ? "; decimals are written with a point" : ""));
   }
   if (code == std::errc::result_out_of_range) {
     // Smaller than the smallest double: zero is the nearest value.
     if (digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos) return 0;
-    fail(fmt::format("{} is too large: '{}'", what, shown(text)));
+    fail(fmt::format("{} is too large: '{}'", what, shown_text(text)));
   }
-  if (!std::isfinite(value)) fail(fmt::format("{} is not finite: '{}'", what, shown(text)));
+  if (!std::isfinite(value)) fail(fmt::format("{} is not finite: '{}'", what, shown_text(text)));
   return value;
 }
 
@@ -152,7 +146,7 @@ std::int64_t TextScanner::to_integer(std::string_view text, std::string_view wha
   std::int64_t value = 0;
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (code != std::errc() || end != digits.data() + digits.size()) {
-    fail(fmt::format("{} is not a whole number: '{}'", what, shown(text)));
+    fail(fmt::format("{} is not a whole number: '{}'", what, shown_text(text)));
   }
   return value;
 }

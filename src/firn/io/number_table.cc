@@ -1,5 +1,6 @@
 #include <firn/core/error.h>
 #include <firn/io/number_table.h>
+#include <firn/io/shown_text.h>
 #include <fmt/format.h>
 
 #include <charconv>
@@ -34,16 +35,14 @@ std::optional<double> number_of(std::string_view word) {
 
 }  // namespace
 
-NumberTable read_number_table(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) throw Error(ErrorKind::files, fmt::format("{}: cannot be read", path.string()));
+NumberTable parse_number_table(std::istream& text, const std::string& name) {
   NumberTable table;
   std::string line;
-  for (std::size_t number = 1; std::getline(file, line); ++number) {
+  for (std::size_t number = 1; std::getline(text, line); ++number) {
     const auto words = words_of(line);
     if (words.empty()) continue;
     const auto fail = [&](const std::string& what) {
-      throw Error(ErrorKind::usage, fmt::format("{}:{}: {}", path.string(), number, what));
+      throw Error(ErrorKind::usage, fmt::format("{}:{}: {}", name, number, what));
     };
     if (table.columns == 0 && table.names.empty() && !number_of(words[0])) {
       table.names.assign(words.begin(), words.end());
@@ -56,12 +55,18 @@ NumberTable read_number_table(const std::filesystem::path& path) {
     }
     for (const std::string_view word : words) {
       const std::optional<double> value = number_of(word);
-      if (!value) fail(fmt::format("\"{}\" is not a finite number", word));
+      if (!value) fail(fmt::format("\"{}\" is not a finite number", shown_text(word)));
       table.values.push_back(*value);
     }
   }
-  if (table.values.empty()) throw Error(ErrorKind::usage, fmt::format("{}: has no row of numbers", path.string()));
+  if (table.values.empty()) throw Error(ErrorKind::usage, fmt::format("{}: has no row of numbers", name));
   return table;
+}
+
+NumberTable read_number_table(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) throw Error(ErrorKind::files, fmt::format("{}: cannot be read", path.string()));
+  return parse_number_table(file, path.string());
 }
 
 }  // namespace firn

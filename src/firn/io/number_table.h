@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -20,5 +21,7 @@ struct NumberTable {
 /// out. Numbers are read the same way in every locale. Throws Error (files) if the file cannot be read, Error (usage)
 /// with path:line for what is not a finite number, for rows of different lengths and if there is no row.
 NumberTable read_number_table(const std::filesystem::path& path);
+/// The same of a text; `name` stands first in messages.
+NumberTable parse_number_table(std::istream& text, const std::string& name);
 
 }  // namespace firn

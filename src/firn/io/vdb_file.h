@@ -18,7 +18,7 @@ namespace firn {
 /// of the next or the one before: then nothing between them is known.
 std::vector<LevelSetFrame> read_level_sets(const std::vector<std::filesystem::path>& files, double scale = 1);
 
-/// Of the library that is linked: "10.0.1".
+/// Of the library that reads them, in firn-reader: "10.0.1".
 std::string openvdb_version();
 
 }  // namespace firn

@@ -1,6 +1,6 @@
 #include <firn/core/error.h>
 #include <firn/io/atomic_file.h>
-#include <firn/render/child_process.h>
+#include <firn/core/child_process.h>
 #include <firn/render/film.h>
 #include <fmt/format.h>
 #include <unistd.h>

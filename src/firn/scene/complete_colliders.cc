@@ -1,6 +1,6 @@
 #include <firn/scene/complete_objects.h>
-#include <firn/scene/deforming_collider.h>
 #include <firn/scene/nearest.h>
+#include <firn/scene/sequence_files.h>
 #include <firn/scene/value_text.h>
 
 #include <fmt/format.h>

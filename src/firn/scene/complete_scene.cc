@@ -163,10 +163,11 @@ void check_file(const SceneDraft& draft, std::string_view section, std::size_t i
   std::error_code ignored;
   // A pipe without a writer would block for ever.
   if (std::filesystem::is_regular_file(path, ignored)) return;
-  draft.fail(section, index, key,
-             fmt::format("{} {} is not a file (looked for {}); paths start at the scene file's folder", key,
-                         in_quotes(file), std::filesystem::absolute(path, ignored).lexically_normal().string()),
-             ErrorKind::files);
+  draft.fail(
+      section, index, key,
+      fmt::format("{} {} is not a file (looked for {}); paths start at the scene file's folder", key, in_quotes(file),
+                  one_line(std::filesystem::absolute(path, ignored).lexically_normal().string())),
+      ErrorKind::files);
 }
 
 void complete_scene(SceneDraft& draft) {

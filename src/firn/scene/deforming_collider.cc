@@ -1,9 +1,9 @@
 #include <firn/core/error.h>
 #include <firn/core/log.h>
-#include <firn/io/file_sequence.h>
 #include <firn/io/mesh_sequence.h>
 #include <firn/io/vdb_file.h>
 #include <firn/scene/deforming_collider.h>
+#include <firn/scene/sequence_files.h>
 #include <fmt/format.h>
 
 #include <string_view>
@@ -53,17 +53,6 @@ std::shared_ptr<const DeformingShape<3>> deforming_level_set(const Scene& scene,
 }
 
 }  // namespace
-
-std::vector<fs::path> sequence_files(const Scene& scene, const ColliderSettings& settings) {
-  const bool meshes = settings.shape == ShapeSettings::Shape::mesh_sequence;
-  const std::vector<std::string>& names = meshes ? settings.meshes : settings.level_sets;
-  std::vector<fs::path> files;
-  for (const std::string& name : names) {
-    for (fs::path& file : expand_sequence(scene.locate(name))) files.push_back(std::move(file));
-  }
-  if (files.empty()) throw Error(ErrorKind::usage, "must name at least one file");
-  return files;
-}
 
 std::shared_ptr<const DeformingShape<3>> deforming_shape(const Scene& scene, const ColliderSettings& settings) {
   try {

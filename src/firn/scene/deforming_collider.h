@@ -12,10 +12,6 @@
 
 namespace firn {
 
-/// The files of a mesh or level set sequence, in order. Throws Error as expand_sequence(), and Error (usage) if the
-/// list is empty.
-std::vector<std::filesystem::path> sequence_files(const Scene& scene, const ColliderSettings& settings);
-
 /// The solid of a mesh or level set sequence in the collider's frame. Warns of a cycle whose last form is not its
 /// first. Throws Error, with the name of the collider, for files that cannot be used.
 std::shared_ptr<const DeformingShape<3>> deforming_shape(const Scene& scene, const ColliderSettings& settings);

@@ -66,7 +66,8 @@ std::vector<Key> file_keys() {
           .required()
           .only_with("shape", {"polygon", "height_field", "mesh"})
           .help(
-              "Outline (OBJ), heights (PNG: black 0, white 1; or rows of numbers) or closed mesh (OBJ, PLY, STL); the "
+              "Outline (OBJ), heights (PNG: black 0, white 1; or rows of numbers) or closed mesh (OBJ, PLY, STL, "
+              "glTF, FBX ...); the "
               "path starts at the scene file's folder."),
       K("scale", of<Settings>(&ShapeSettings::scale))
           .above(0)
@@ -111,7 +112,8 @@ std::vector<Key> sequence_keys() {
           .required()
           .only_with("shape", {"mesh_sequence"})
           .help(
-              "Closed meshes (OBJ, PLY, STL) whose vertices move and whose triangles stay the same: a pattern such as "
+              "Closed meshes (OBJ, PLY, STL, glTF, FBX ...) whose vertices move and whose triangles stay the same: a "
+              "pattern such as "
               "\"belt/belt_####.obj\", where #### is a number of at least four digits, or a list. The surface moves "
               "as its vertices do, along itself too."),
       K("level_sets", &ColliderSettings::level_sets)

@@ -13,7 +13,8 @@ std::vector<Key> body_shape_keys() {
       K("mesh", &BodySettings::mesh)
           .path()
           .default_text("none")
-          .help("Closed triangle mesh (OBJ, PLY, STL) to fill; the path starts at the scene file's folder."),
+          .help("Closed triangle mesh (OBJ, PLY, STL, glTF, FBX ...) to fill; the path starts at the scene "
+                "file's folder."),
       K("polygon", &BodySettings::polygon)
           .path()
           .default_text("none")

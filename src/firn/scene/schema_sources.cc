@@ -30,7 +30,7 @@ std::vector<Key> region_keys() {
       K("mesh", of<S>(&R::mesh))
           .path()
           .default_text("none")
-          .help("Closed triangle mesh (OBJ, PLY, STL); the path starts at the scene file's folder."),
+          .help("Closed triangle mesh (OBJ, PLY, STL, glTF, FBX ...); the path starts at the scene file's folder."),
       K("polygon", of<S>(&R::polygon))
           .path()
           .default_text("none")

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <firn/io/shown_text.h>
 #include <firn/scene/schema.h>
 
 #include <string>
@@ -17,9 +18,6 @@ std::string quoted_list(const std::vector<std::string>& names);
 
 /// A TOML basic string, quotes included; control characters are escaped.
 std::string in_quotes(std::string_view text);
-
-/// The text with control characters replaced by '?', for messages, which are single lines.
-std::string one_line(std::string_view text);
 
 /// Whether the text is UTF-8, as TOML and JSON want it: no overlong forms, no surrogates.
 bool is_utf8(std::string_view text);
