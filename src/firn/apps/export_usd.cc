@@ -1,7 +1,7 @@
 #include <firn/apps/export_usd.h>
 #include <firn/apps/share_folder.h>
 #include <firn/core/error.h>
-#include <firn/render/child_process.h>
+#include <firn/core/child_process.h>
 #include <fmt/format.h>
 
 #include <cstdlib>
