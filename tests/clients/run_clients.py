@@ -65,6 +65,8 @@ def program(name):
 
 
 def has_modules(python, *names):
+    if shutil.which(python) is None:
+        return False
     return subprocess.run([python, "-c", "import " + ", ".join(names)], capture_output=True).returncode == 0
 
 
