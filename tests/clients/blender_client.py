@@ -96,6 +96,27 @@ def check_points(checks, files):
     checks.that(box_error(places(things), L_FRAMES, "z") < 0.002, "after the last frame it stays")
 
 
+def check_shifted(checks, files):
+    """Another first frame, an odd frame rate, gaps in the sequence and a file that goes while it plays."""
+    empty_scene()
+    folder = files / "shifted"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    for frame in (1, 3):
+        shutil.copy(files / "blender" / f"particles.{frame:04}.ply", folder / f"p_{frame:06}.ply")
+    (folder / "p.series.json").write_text('{"frames_per_second": 29.97, "particle_spacing": 0.0311, "up": "z"}')
+    scene = bpy.context.scene
+    things = import_firn(folder / "p_000001.ply", start=11)
+    checks.near(scene.render.fps / scene.render.fps_base, 29.97, 1e-4, "an odd frame rate")
+    checks.equal((scene.frame_start, scene.frame_end), (11, 13), "a run that starts at scene frame 11")
+    for shown, frame in ((13, 3), (12, 1), (11, 1), (5, 1)):
+        scene.frame_set(shown)
+        checks.that(box_error(places(things), frame, "z") < 0.002, f"scene frame {shown} shows file {frame}")
+    (folder / "p_000003.ply").write_bytes(b"ply")
+    scene.frame_set(13)
+    checks.that(box_error(places(things), 1, "z") < 0.002, "where a file is damaged the last shape stays")
+
+
 def check_axes(checks, files):
     """Files for another program say which axis is up, and the add-on turns them; who overrules that is noticed."""
     for client in ("houdini", "paraview"):
@@ -326,6 +347,7 @@ def main():
     load_addon()
     empty_scene()
     check_points(checks, files)
+    check_shifted(checks, files)
     check_axes(checks, files)
     check_tap(checks, files)
     check_refusals(checks, files)

@@ -46,11 +46,16 @@ class Display:
             number = stream.readline().strip()
         if not number:
             raise RuntimeError("Xvfb does not start")
-        return {**os.environ, "DISPLAY": f":{number}", "LIBGL_ALWAYS_SOFTWARE": "1"}
+        return {**system_environment(), "DISPLAY": f":{number}", "LIBGL_ALWAYS_SOFTWARE": "1"}
 
     def __exit__(self, *_):
         self.server.terminate()
         self.server.wait()
+
+
+def system_environment():
+    """Debian's ParaView and Blender look for their Python along PATH, and a version manager's has none of their modules."""
+    return {**os.environ, "PATH": "/usr/bin" + os.pathsep + os.environ.get("PATH", "")}
 
 
 def program(name):
@@ -60,6 +65,8 @@ def program(name):
 
 
 def has_modules(python, *names):
+    if shutil.which(python) is None:
+        return False
     return subprocess.run([python, "-c", "import " + ", ".join(names)], capture_output=True).returncode == 0
 
 
@@ -113,7 +120,8 @@ def check_paraview(options):
 def check_blender(options):
     blender = program("blender")
     arguments = [options.folder, options.folder / "blender.png", options.firn]
-    return call([blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python", HERE / "blender_client.py", "--", *arguments])
+    return call([blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python", HERE / "blender_client.py", "--", *arguments],
+                env=system_environment())
 
 
 def check_usd(options):

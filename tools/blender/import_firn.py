@@ -276,7 +276,7 @@ LOOKS = {
     "snow": ((0.90, 0.925, 0.95), 0.7, {"subsurface": 0.3}),
     "wet_snow": ((0.74, 0.79, 0.85), 0.45, {"subsurface": 0.3}),
     "powder_snow": ((0.92, 0.935, 0.95), 0.85, {"subsurface": 0.3}),
-    "jelly": ((0.55, 0.035, 0.05), 0.08, {"subsurface": 0.6, "transmission": 0.4}),
+    "jelly": ((0.55, 0.035, 0.05), 0.15, {"subsurface": 0.2}),
     "yogurt": ((0.80, 0.77, 0.70), 0.3, {"subsurface": 0.3}),
     "whipped_cream": ((0.84, 0.80, 0.71), 0.6, {"subsurface": 0.3}),
     "toothpaste": ((0.38, 0.70, 0.66), 0.25, {"subsurface": 0.2}),
@@ -339,6 +339,7 @@ def make_material(look, name, color_from, balls):
     set_input(shader, ["Metallic"], more.get("metallic", 0.0))
     set_input(shader, ["Transmission Weight", "Transmission"], more.get("transmission", 0.0))
     set_input(shader, ["Subsurface Weight", "Subsurface"], more.get("subsurface", 0.0))
+    shader.subsurface_method = "BURLEY"  # less noise than random walks; nobody looks into a crystal here
     set_input(shader, ["Subsurface Radius"], (0.02, 0.02, 0.02))
     set_input(shader, ["Subsurface Color"], (*color, 1))
     set_input(shader, ["IOR"], more.get("ior", 1.45))
