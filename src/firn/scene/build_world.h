@@ -2,9 +2,11 @@
 
 #include <firn/integrators/world.h>
 #include <firn/scene/settings.h>
+#include <firn/scene/tractions.h>
 #include <firn/state/snapshot.h>
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -34,6 +36,7 @@ template <class Real, int dim>
 struct BuiltWorld {
   World<Real, dim> world;
   WorldPlan plan;
+  std::shared_ptr<const Tractions<dim>> tractions;  ///< part of world.body_force
 };
 
 /// Fills the bodies with particles and sets up materials, colliders and the grid. Real and dim must be the scene's.
