@@ -35,7 +35,9 @@ TEST_F(Window, LooksAsItDid) {
       ASSERT_TRUE(paused_at(window, 4));
     }
     Image picture = window.capture();
-    for (int y = 0; y < 200; ++y) std::fill(picture.pixel(0, y), picture.pixel(380, y), std::uint8_t(0));
+    for (int y = 0; y < 300; ++y) {
+      std::fill(picture.pixel(0, y), picture.pixel(y < 24 ? 640 : 248, y), std::uint8_t(0));
+    }
     const Image small = test::reduced(picture);
     if (const char* folder = std::getenv("FIRN_TEST_PICTURES"))
       write_png(std::string(folder) + "/" + name + ".png", small);
@@ -59,6 +61,8 @@ TEST_F(Window, CpuSideOfAMillionParticles) {
     void pause() override {}
     void step() override {}
     void reset() override {}
+    void run_to(std::int64_t) override {}
+    void seek(std::int64_t) override {}
     void next() {
       auto snapshot = std::make_shared<Snapshot>();
       snapshot->particle_spacing = 0.01;
