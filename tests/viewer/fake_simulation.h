@@ -55,11 +55,16 @@ class FakeSimulation final : public Simulation {
   std::int64_t particle_count() const override { return 1; }
   TimeStep step() override { return {}; }
   StepOutlook outlook() const override { return {}; }
+  void change(const Scene& scene) override { scene_ = scene; }
+  GridValues grid() const override { return {}; }
   Checkpoint checkpoint() const override { return {}; }
   void restore(const Checkpoint&) override {}
   std::optional<FrameReport> advance_frame(const Pause&) override {
     gate_.pass();
-    if (frame_ + 1 == fail_at_) throw Error(ErrorKind::numerical, "particle 7 cannot go on");
+    if (frame_ + 1 == fail_at_) {
+      failed_particle_ = {7, "stuff", {{0, 0.5, 0}}};
+      throw Error(ErrorKind::numerical, "particle 7 cannot go on");
+    }
     ++frame_;
     return report();
   }

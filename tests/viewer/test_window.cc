@@ -117,15 +117,14 @@ TEST_F(Window, ColoursByAColumnWithABar) {
   ASSERT_TRUE(paused_at(window, 1));
   const Image by_material = window.capture();
   // The choice is made with the mouse, in the panel: a click opens it, another one takes the first column.
-  click(window, 60, 122);
+  click(window, "colour by");
   const Image open = window.capture();
-  click(window, 60, 165);
+  click(window, "colour by speed");
   if (const char* folder = std::getenv("FIRN_TEST_PICTURES")) {
     write_png(std::string(folder) + "/window_choices.png", open);
     write_png(std::string(folder) + "/window_colors.png", window.capture());
   }
-  ASSERT_NE(window.controls().color_by, "");
-  window.controls().color_by = "velocity";
+  ASSERT_EQ(window.controls().color_by, "velocity");
   window.controls().range = {0, 4};
   window.controls().source().step();
   ASSERT_TRUE(paused_at(window, 2));
@@ -181,6 +180,13 @@ TEST_F(Window, AFailureShowsItsReportAndTheWindowLives) {
   // The report lies in the lower left corner, dark.
   const auto corner = [](const Image& image) { return image.pixel(20, kHeight - 20); };
   EXPECT_LT(corner(report)[0] + 30, corner(before)[0]);
+  // A cross marks the particle: half a metre below the middle of the picture, at 4 m.
+  const auto cross = [](const std::uint8_t* p) { return p[0] > 240 && p[1] < 60 && p[2] < 60; };
+  const Found mark = find(report, cross);
+  EXPECT_EQ(find(before, cross).count, 0);
+  EXPECT_GT(mark.count, 50);
+  EXPECT_NEAR(mark.x, kWidth / 2.0, 2);
+  EXPECT_NEAR(mark.y, kHeight / 2.0 * (1 + 0.125 / std::tan(20 * M_PI / 180)), 2);
   press(window, GLFW_KEY_R);
   ASSERT_TRUE(paused_at(window, 1));
   EXPECT_LT(difference(before, window.capture()), 1e-3);
@@ -236,7 +242,7 @@ TEST_F(Window, TheTimeLineGoesToAFrame) {
   ViewerWindow window(scene_, playback, options_);
   ASSERT_TRUE(paused_at(window, 1));
   const Found first = find(window.capture(), red);
-  click(window, 350, 70);  // the right end of the line
+  click(window, "time line", 0.98);
   ASSERT_TRUE(paused_at(window, 4));
   EXPECT_GT(find(window.capture(), red).y, first.y + 30) << "it has fallen";
   press(window, GLFW_KEY_R);

@@ -35,7 +35,9 @@ TEST_F(Window, LooksAsItDid) {
       ASSERT_TRUE(paused_at(window, 4));
     }
     Image picture = window.capture();
-    for (int y = 0; y < 200; ++y) std::fill(picture.pixel(0, y), picture.pixel(380, y), std::uint8_t(0));
+    for (int y = 0; y < 300; ++y) {
+      std::fill(picture.pixel(0, y), picture.pixel(y < 24 ? 640 : 248, y), std::uint8_t(0));
+    }
     const Image small = test::reduced(picture);
     if (const char* folder = std::getenv("FIRN_TEST_PICTURES"))
       write_png(std::string(folder) + "/" + name + ".png", small);
@@ -59,6 +61,8 @@ TEST_F(Window, CpuSideOfAMillionParticles) {
     void pause() override {}
     void step() override {}
     void reset() override {}
+    void run_to(std::int64_t) override {}
+    void seek(std::int64_t) override {}
     void next() {
       auto snapshot = std::make_shared<Snapshot>();
       snapshot->particle_spacing = 0.01;
@@ -105,20 +109,84 @@ TEST_F(Window, CpuSideOfAMillionParticles) {
   test::record("calls_ms_with_software_vertices", 1e3 * column.draw);
 }
 
-/// Makes docs/images/viewer.png; FIRN_TEST_PICTURES names the folder to write it to.
-TEST_F(Window, DISABLED_PictureOfTheSnowScene) {
+/// Makes docs/images/viewer.png and the pictures of docs/images/viewer (as PNG; tools of one's choice turn them into
+/// JPEG); FIRN_TEST_PICTURES names the folder to write them to.
+TEST_F(Window, DISABLED_PicturesOfTheModes) {
+  const std::string folder = std::string(std::getenv("FIRN_TEST_PICTURES")) + "/";
   const Scene scene = load_scene(FIRN_SOURCE_DIR "/scenes/snow_cube.toml",
-                                 {"render.color_by=\"velocity\"", "resolution.particles=60000"});
-  SimulationPlayer player([&scene] { return Simulation::create(scene); });
-  ViewerWindow window(scene, player, {.width = 1120, .height = 700, .title = "Firn"});
-  player.play();
-  ASSERT_TRUE(player.wait([](const SourceStatus& s) { return s.frame.frame == 20; }, 600s));
-  player.pause();
-  ASSERT_TRUE(reaches(window, [](const SourceStatus& s) { return !s.busy && s.state == PlayState::paused; }));
+                                 {"render.color_by=\"velocity\"", "resolution.particles=40000"});
+  SimulationPlayer player(scene);
+  ViewerWindow window(scene, player, {.width = 1180, .height = 700, .title = "Firn"});
+  const auto save = [&](const std::string& name) {
+    for (int i = 0; i < 4; ++i) window.draw();
+    rest(window);
+    rest(window);
+    write_png(folder + name + ".png", window.capture());
+  };
+  player.run_to(20);
+  ASSERT_TRUE(player.wait([](const SourceStatus& s) { return s.frame.frame == 20 && !s.busy; }, 600s));
+  window.draw();
   drag(window, GLFW_MOUSE_BUTTON_LEFT, 60, 20);
+  save("viewer");
+  save("scene");
+  window.panel().tab = "Plots";
+  save("plots");
+  click(window, 480, 400);
+  save("picked");
+  window.panel().side = false;
+  window.controls().color_by = "";
+  player.step();
+  ASSERT_TRUE(player.wait([](const SourceStatus& s) { return s.frame.frame == 21 && !s.busy; }, 600s));
+  press(window, GLFW_KEY_P);
+  save("orthographic");
+  press(window, GLFW_KEY_P);
+  press(window, GLFW_KEY_L);
+  save("soft_light");
+  press(window, GLFW_KEY_L);
+  press(window, GLFW_KEY_G);
+  press(window, GLFW_KEY_G);
+  ASSERT_TRUE(reaches(window, [&](const SourceStatus& s) { return !s.busy && player.grid() != nullptr; }));
+  save("grid");
+  press(window, GLFW_KEY_G);
+  window.controls().color_by = "von_mises_stress";
+  window.controls().clip.axis = 2;
+  press(window, GLFW_KEY_C);
+  player.step();
+  ASSERT_TRUE(player.wait([](const SourceStatus& s) { return s.frame.frame == 22 && !s.busy; }, 600s));
+  save("clip");
+}
+
+TEST_F(Window, DISABLED_PicturesOfTheMouse) {
+  const std::string folder = std::string(std::getenv("FIRN_TEST_PICTURES")) + "/";
+  Scene scene = parse_scene(kBall, "ball.toml", {"resolution.particles=20000", "end_time=2", "gravity=[0,-2,0]"});
+  SimulationPlayer player(scene);
+  ViewerWindow window(scene, player, {.width = 960, .height = 600, .title = "Firn"});
+  ASSERT_TRUE(paused_at(window, 1));
+  window.controls().hand_radius = 0.2;
+  window.controls().drop_preset = "snow";
+  window.on_cursor(750, 200);
+  press(window, GLFW_KEY_B);
+  window.on_cursor(700, 420);
+  press(window, GLFW_KEY_O);
+  window.on_cursor(480, 290);
+  window.draw();
+  window.on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_PRESS, GLFW_MOD_CONTROL);
+  window.draw();
+  window.on_cursor(640, 200);
+  player.run_to(5);
+  ASSERT_TRUE(reaches(window, [](const SourceStatus& s) { return s.frame.frame == 5 && !s.busy; }));
   rest(window);
-  rest(window);
-  write_png(std::string(std::getenv("FIRN_TEST_PICTURES")) + "/viewer.png", window.capture());
+  write_png(folder + "grab.png", window.capture());
+  window.on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_RELEASE, 0);
+}
+
+TEST_F(Window, DISABLED_PictureOfTheStartPage) {
+  ViewerWindow::Options options = {.width = 1180, .height = 760, .title = "Firn"};
+  options.gallery = list_gallery(FIRN_SOURCE_DIR);
+  options.open = [](const std::filesystem::path&) -> Show { return {}; };
+  ViewerWindow window(options);
+  for (int i = 0; i < 20; ++i) window.draw();
+  write_png(std::string(std::getenv("FIRN_TEST_PICTURES")) + "/start_page.png", window.capture());
 }
 
 }  // namespace

@@ -41,6 +41,9 @@ target = [0, 1, 0]
 field_of_view = 40
 )";
 
+/// Where the panel on the left and the menus are.
+inline bool in_panel(int x, int y) { return y < 22 || (x < 246 && y < 300); }
+
 /// Pixels at which a condition holds, of the part of the picture that the panel leaves free.
 struct Found {
   int count = 0;
@@ -50,7 +53,7 @@ inline Found find(const Image& image, const std::function<bool(const std::uint8_
   Found found;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width - 100; ++x) {
-      if ((x < 340 && y < 190) || !condition(image.pixel(x, y))) continue;
+      if (in_panel(x, y) || !condition(image.pixel(x, y))) continue;
       ++found.count;
       found.x += x;
       found.y += y;
@@ -68,7 +71,7 @@ inline double difference(const Image& a, const Image& b) {
   int different = 0, all = 0;
   for (int y = 0; y < a.height; ++y) {
     for (int x = 0; x < a.width; ++x) {
-      if (x < 340 && y < 190) continue;
+      if (in_panel(x, y)) continue;
       ++all;
       for (int c = 0; c < 3; ++c) {
         if (std::abs(a.pixel(x, y)[c] - b.pixel(x, y)[c]) > 12) {
@@ -112,10 +115,10 @@ class Window : public testing::Test {
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     window.draw();
   }
-  void press(ViewerWindow& window, int key) {
-    window.on_key(key, 0, GLFW_PRESS, 0);
+  void press(ViewerWindow& window, int key, int mods = 0) {
+    window.on_key(key, 0, GLFW_PRESS, mods);
     window.draw();
-    window.on_key(key, 0, GLFW_RELEASE, 0);
+    window.on_key(key, 0, GLFW_RELEASE, mods);
     window.draw();
   }
   void drag(ViewerWindow& window, int button, double dx, double dy) {
@@ -131,14 +134,21 @@ class Window : public testing::Test {
     window.on_button(button, GLFW_RELEASE, 0);
     window.draw();
   }
+  /// A button, menu or slider by its label, at a share of its width.
+  void click(ViewerWindow& window, const std::string& item, double part = 0.5) {
+    const auto found = window.panel().items.find(item);
+    ASSERT_NE(found, window.panel().items.end()) << item << " is not to be seen";
+    const auto& rect = found->second;
+    click(window, rect[0] + part * (rect[2] - rect[0]), 0.5 * (rect[1] + rect[3]));
+  }
   void click(ViewerWindow& window, double x, double y) {
     window.on_cursor(x, y);
     window.draw();
     window.on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_PRESS, 0);
     window.draw();
     window.on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_RELEASE, 0);
-    window.draw();
-    window.draw();
+    // What a click opens is laid out in the pictures after it.
+    for (int i = 0; i < 4; ++i) window.draw();
   }
 
   VirtualDisplay display_;

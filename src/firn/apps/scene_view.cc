@@ -72,14 +72,14 @@ bool has_own_kind(const ColliderSettings& collider) {
          (collider.shape == Shape::half_space || collider.shape == Shape::box || collider.shape == Shape::sphere);
 }
 
-void draw_own_kind(const ColliderSettings& collider, const Pose<3>& pose, View& view) {
+void draw_own_kind(const ColliderSettings& collider, int number, const Pose<3>& pose, View& view) {
   const Vec3f color = drawn_color(collider.color);
   if (collider.shape == ShapeSettings::Shape::half_space) {
-    view.half_spaces.push_back({pose.origin, pose.rotation * collider.normal, color});
+    view.half_spaces.push_back({pose.origin, pose.rotation * collider.normal, color, number});
   } else if (collider.shape == ShapeSettings::Shape::box) {
-    view.boxes.push_back({pose.origin, pose.rotation, 0.5 * pose.scale * collider.size, color});
+    view.boxes.push_back({pose.origin, pose.rotation, 0.5 * pose.scale * collider.size, color, number});
   } else {
-    view.spheres.push_back({pose.origin, pose.scale * collider.radius, color});
+    view.spheres.push_back({pose.origin, pose.scale * collider.radius, color, number});
   }
 }
 
@@ -144,12 +144,13 @@ View SceneDrawing::view_at(double t) const {
   }
   for (const Drawn& drawn : colliders_) {
     const Pose<3> pose = drawn.pose_at(t);
+    const int number = static_cast<int>(drawn.settings - scene.colliders.data());
     if (drawn.deforming && drawn.form_time != t) {
       drawn.form = std::make_shared<ShapeSurface>(drawn_surface(scene_, *drawn.deforming, drawn.settings->inverted, t));
       drawn.form_time = t;
     }
     if (!drawn.solid.surface && !drawn.deforming) {
-      draw_own_kind(*drawn.settings, pose, view);
+      draw_own_kind(*drawn.settings, number, pose, view);
       continue;
     }
     DrawnSolid& solid = view.solids.emplace_back(drawn.solid);
@@ -157,6 +158,7 @@ View SceneDrawing::view_at(double t) const {
     solid.origin = pose.origin;
     solid.rotation = pose.rotation;
     solid.scale = pose.scale;
+    solid.collider = number;
   }
   return view;
 }

@@ -32,6 +32,7 @@ struct DrawnHalfSpace {
   Vec3d point = {};
   Vec3d normal = {{0, 1, 0}};
   Vec3f color = kDefaultColor;
+  int collider = -1;  ///< of the scene, for who asks what it is; -1 for none
 };
 
 struct DrawnBox {
@@ -39,12 +40,14 @@ struct DrawnBox {
   Mat3d rotation = identity<double, 3>();  ///< world from box
   Vec3d half_size = {{0.5, 0.5, 0.5}};     ///< m
   Vec3f color = kDefaultColor;
+  int collider = -1;  ///< of the scene, for who asks what it is; -1 for none
 };
 
 struct DrawnSphere {
   Vec3d center = {};
   double radius = 0.5;  ///< m
   Vec3f color = kDefaultColor;
+  int collider = -1;  ///< of the scene, for who asks what it is; -1 for none
 };
 
 /// A solid of any other shape. The surface stands for it in 3D and in the viewer, the section in pictures of 2D.
@@ -57,6 +60,7 @@ struct DrawnSolid {
   Vec3f color = kDefaultColor;
   bool endless = false;  ///< has no end, as the solid around a cavity: seen from outside only, and casts no shadow
   bool glass = false;    ///< clear: mirrors a part of the sky, lets the rest pass straight, and casts no shadow
+  int collider = -1;     ///< as above
 
   Vec3d at(const Vec3d& x) const { return origin + rotation * (scale * x); }
 };

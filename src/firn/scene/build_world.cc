@@ -202,7 +202,7 @@ BuiltWorld<Real, dim> build_world(const Scene& scene, const PlanCheck& check) {
     next_id += static_cast<std::uint32_t>(samples.positions.size());
   }
   tractions->check();
-  return {std::move(world), std::move(plan)};
+  return {std::move(world), std::move(plan), tractions};
 }
 
 template BuiltWorld<float, 2> build_world<float, 2>(const Scene&, const PlanCheck&);

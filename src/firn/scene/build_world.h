@@ -2,10 +2,12 @@
 
 #include <firn/integrators/world.h>
 #include <firn/scene/settings.h>
+#include <firn/scene/tractions.h>
 #include <firn/state/snapshot.h>
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,7 @@ template <class Real, int dim>
 struct BuiltWorld {
   World<Real, dim> world;
   WorldPlan plan;
+  std::shared_ptr<const Tractions<dim>> tractions;  ///< part of world.body_force
 };
 
 /// Is shown the plan before the first particle is placed, and may refuse it by throwing.

@@ -102,14 +102,6 @@ BodyForce<dim> force_of(const Scene& scene, std::shared_ptr<const Tractions<dim>
       });
 }
 
-double shortest_response_time(const Scene& scene) {
-  double shortest = std::numeric_limits<double>::infinity();
-  for (const FieldSettings& field : scene.fields) {
-    if (field.type == FieldSettings::Type::wind) shortest = std::min(shortest, field.response_time);
-  }
-  return shortest;
-}
-
 template BodyForce<2> force_of<2>(const Scene&, std::shared_ptr<const Tractions<2>>);
 template BodyForce<3> force_of<3>(const Scene&, std::shared_ptr<const Tractions<3>>);
 

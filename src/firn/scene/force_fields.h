@@ -16,7 +16,4 @@ namespace firn {
 template <int dim>
 BodyForce<dim> force_of(const Scene& scene, std::shared_ptr<const Tractions<dim>> tractions = nullptr);
 
-/// The shortest response time of the scene's winds, s; infinite without one. A step must stay well below it.
-double shortest_response_time(const Scene& scene);
-
 }  // namespace firn

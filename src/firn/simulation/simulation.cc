@@ -4,14 +4,17 @@
 #include <firn/integrators/step.h>
 #include <firn/integrators/verbs.h>
 #include <firn/materials/model_info.h>
-#include <firn/measure/output_columns.h>
+#include <firn/scene/force_fields.h>
 #include <firn/scene/vary_parameters.h>
 #include <firn/simulation/checkpoint_state.h>
 #include <firn/simulation/endless_step.h>
 #include <firn/simulation/frame_state.h>
+#include <firn/simulation/live_changes.h>
 #include <firn/simulation/runaways.h>
 #include <firn/simulation/simulation.h>
 #include <firn/simulation/sources.h>
+#include <firn/simulation/world_change.h>
+#include <firn/simulation/world_report.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <tbb/global_control.h>
@@ -47,6 +50,7 @@ class SimulationOf final : public Simulation {
     }
     auto built = build_world<Real, dim>(scene_, check);
     plan_ = std::move(built.plan);
+    tractions_ = std::move(built.tractions);
     world_ = std::make_unique<World<Real, dim>>(std::move(built.world));
     set_limits();
     for (const auto& material : world_->materials) material_names_.push_back(material.name);
@@ -92,6 +96,7 @@ class SimulationOf final : public Simulation {
 
   std::optional<FrameReport> advance_frame(const Pause& pause) override {
     const auto start = std::chrono::steady_clock::now();
+    failed_particle_.reset();
     int attempt = 0;
     double seconds_before = 0;
     std::optional<TimeStep> promised;
@@ -121,6 +126,8 @@ class SimulationOf final : public Simulation {
       promised.reset();
     }
     const std::string text = describe(*failure, report_.dt);
+    failed_particle_ = {failure->id, material_names_[failure->material], {}};
+    std::copy_n(failure->position.begin(), dim, failed_particle_->position.e);
     if (kept_) {
       take_back();
       report_ = kept_->report;
@@ -174,28 +181,46 @@ class SimulationOf final : public Simulation {
 
   Snapshot snapshot() const override {
     Snapshot snapshot;
-    snapshot.dimension = dim;
-    snapshot.time = world_->t;
-    snapshot.cell_size = world_->grid.dx();
-    for (const BodySettings& body : scene_.bodies) snapshot.bodies.push_back(body.name);
-    for (const EmitterSettings& emitter : scene_.emitters) snapshot.bodies.push_back(emitter.name);
-    double smallest = scene_.emitters.empty() ? 0 : plan_.particle_volume;
-    for (const WorldPlan::Body& body : plan_.bodies) {
-      const double each = body.volume / static_cast<double>(body.particles);
-      smallest = smallest == 0 ? each : std::min(smallest, each);
-    }
-    snapshot.particle_spacing = std::pow(smallest, 1.0 / dim);
-    const std::vector<Parameter> varied = varied_parameters(scene_);
-    arena_.execute([&] {
-      for (std::size_t m = 0; m < world_->materials.size(); ++m) {
-        const auto& material = world_->materials[m];
-        const MaterialSettings& settings = scene_.materials[m];
-        append_to_snapshot<Real, dim>(snapshot, material.particles, material.model, material.parameters,
-                                      {material.name, settings.model, settings.preset, varied}, world_->grid.dx(),
-                                      world_->transfer.kernel);
-      }
-    });
+    arena_.execute([&] { snapshot = snapshot_of<Real, dim>(*world_, scene_, plan_); });
     return snapshot;
+  }
+
+  void change(const Scene& scene) override {
+    if (paused_) throw Error(ErrorKind::usage, "a scene cannot be changed in the middle of a frame");
+    if (!is_all_live(scene_, scene)) {
+      throw Error(ErrorKind::usage, "the scene differs in what cannot change while it is simulated; reset begins anew");
+    }
+    // Everything that can be refused comes before the first change.
+    check_materials(scene, plan_.cell_size);
+    const std::vector<Collider<dim>> added = new_colliders<dim>(scene_, scene, plan_.cell_size);
+    const BodyForce<dim> force = force_of<dim>(scene, tractions_);
+    arena_.execute([&] {
+      const std::size_t before = world_->materials.size();
+      const Scene old = std::exchange(scene_, scene);
+      add_new_materials<Real, dim>(*world_, scene_, plan_.cell_size, force);
+      auto counts = sources_->counts();
+      try {
+        sources_ = std::make_unique<Sources<Real, dim>>(scene_, plan_, *world_);
+      } catch (...) {
+        world_->materials.erase(world_->materials.begin() + static_cast<std::ptrdiff_t>(before),
+                                world_->materials.end());
+        scene_ = old;
+        sources_ = std::make_unique<Sources<Real, dim>>(scene_, plan_, *world_);
+        sources_->restore(counts);
+        throw;
+      }
+      counts.emitted.resize(scene_.emitters.size());
+      counts.last_slot.resize(scene_.emitters.size(), -1);
+      sources_->restore(counts);
+      goes_on_after_change(change_world<Real, dim>(*world_, old, scene_, plan_.cell_size, added));
+    });
+    kept_.reset();
+  }
+
+  GridValues grid() const override {
+    GridSampler<Real, dim> sampler(world_->grid, world_->transfer.affine);
+    for (const auto& material : world_->materials) sampler.add(material.particles);
+    return sampler.values();
   }
 
   Totals totals() const override {
@@ -247,6 +272,24 @@ class SimulationOf final : public Simulation {
     state.loads_since = loads_since_;
     state.report = report_;
     return state;
+  }
+
+  void goes_on_after_change(bool other_stress) {
+    report_.colliders.resize(scene_.colliders.size());
+    for (std::size_t m = material_names_.size(); m < world_->materials.size(); ++m) {
+      material_names_.push_back(world_->materials[m].name);
+    }
+    const std::int64_t parked = guard_.parked();
+    guard_ = RunawayGuard<Real, dim>(scene_.limits);
+    guard_.restore(parked);
+    set_limits();
+    activate_blocks(*world_);
+    // Only where it must be: what time step control knows of a run that goes on is more than what it begins with.
+    if (other_stress) {
+      if (const StepReport prepared = prepare(*world_); prepared.failure) fail(*prepared.failure, 0);
+    }
+    sources_->act(*world_);
+    note_particles();
   }
 
   void keep() {
@@ -427,20 +470,11 @@ class SimulationOf final : public Simulation {
   }
 
   std::string describe(const ParticleFailure& failure, double dt) const {
-    const auto& material = world_->materials[failure.material];
-    if (failure.cause == kTooFast)
-      return describe_endless(failure, material.name, report_.limit, world_->steps, world_->t, dt);
-    Mat<double, dim> F;
-    std::copy_n(failure.strain.begin(), dim * dim, F.e);
-    Vec<double, dim> v;
-    std::copy_n(failure.velocity.begin(), dim, v.e);
-    return fmt::format(
-        "step {} at t = {:.6g} s with dt = {:.3g} s: particle {} of \"{}\" cannot go on, {}; x = ({:.4g}) m, speed "
-        "{:.4g} m/s, "
-        "F = ({:.4g}), J = {:.4g}. The likely cause is a time step too long for what happens there: lower "
-        "limits.elastic_cfl or limits.max_dt, use a smaller cell size, or soften material.{}",
-        world_->steps, world_->t, dt, failure.id, material.name, failure.cause, fmt::join(failure.position, ", "),
-        norm(v), fmt::join(failure.strain, ", "), determinant(F), material.name);
+    if (failure.cause == kTooFast) {
+      return describe_endless(failure, world_->materials[failure.material].name, report_.limit, world_->steps,
+                              world_->t, dt);
+    }
+    return failure_text<Real, dim>(*world_, failure, dt);
   }
 
   [[noreturn]] void fail(const ParticleFailure& failure, double dt) const {
@@ -451,6 +485,7 @@ class SimulationOf final : public Simulation {
   std::optional<tbb::global_control> thread_limit_;
   std::unique_ptr<World<Real, dim>> world_;
   std::unique_ptr<Sources<Real, dim>> sources_;
+  std::shared_ptr<const Tractions<dim>> tractions_;
   TimeStepLimits limits_;
   RunawayGuard<Real, dim> guard_;
   std::vector<std::string> material_names_;

@@ -2,6 +2,7 @@
 
 #include <firn/integrators/time_step.h>
 #include <firn/io/checkpoint.h>
+#include <firn/measure/grid_values.h>
 #include <firn/measure/penetration.h>
 #include <firn/measure/probe.h>
 #include <firn/measure/totals.h>
@@ -48,6 +49,13 @@ struct StepOutlook {
   double dt = 0;                         ///< s, as long as the limits allow; infinite without particles
   std::string limit;                     ///< what bounds it, as in FrameReport
   std::vector<double> wave_speeds = {};  ///< fastest elastic wave of each material, m/s; 0 without particles
+};
+
+/// The particle that a frame could not be computed for.
+struct FailedParticle {
+  std::int64_t id = 0;
+  std::string material;
+  Vec3d position = {};  ///< m, where it failed
 };
 
 /// Asked after each step; true: stop there.
@@ -104,6 +112,17 @@ class Simulation {
   virtual Snapshot snapshot() const = 0;
   virtual Totals totals() const = 0;
 
+  /// Goes on with another scene, between two frames. Only what is_all_live() lists may differ; what is new begins now.
+  /// A scene whose emitters and fields all begin now gives the same bits as one that had them from the start.
+  /// Error(usage) for anything else that differs, and as build_world; the simulation is then as it was.
+  virtual void change(const Scene& scene) = 0;
+
+  /// The grid as the next step will find it. Between two frames.
+  virtual GridValues grid() const = 0;
+
+  /// Set if the last frame could not be computed.
+  const std::optional<FailedParticle>& failed_particle() const { return failed_particle_; }
+
   /// Density, velocity and pressure at these points, m.
   virtual std::vector<ProbeValue> probe(std::span<const Vec3d> points) const = 0;
 
@@ -119,6 +138,7 @@ class Simulation {
   Scene scene_;
   WorldPlan plan_;
   std::int64_t frame_ = 1;
+  std::optional<FailedParticle> failed_particle_;
 };
 
 }  // namespace firn

@@ -64,7 +64,6 @@ Sources<Real, dim>::Sources(const Scene& scene, const WorldPlan& plan, World<Rea
       particle_volume_(plan.particle_volume),
       spacing_(lattice_spacing<dim>(plan.particle_volume)),
       tolerance_(1e-9 / scene.frame_rate),
-      response_time_(shortest_response_time(scene)),
       first_id_(plan.particles),
       collider_count_(world.colliders.size()) {
   for (const EmitterSettings& emitter : scene_.emitters) add_emitter(emitter, world);
@@ -149,7 +148,12 @@ void Sources<Real, dim>::resume(std::vector<SourceCount> emitted, std::vector<So
 
 template <class Real, int dim>
 auto Sources<Real, dim>::longest_step(const World<Real, dim>& world, double t, double particle_cfl) const -> Bound {
-  Bound bound = {kDragShare * response_time_, "wind"};
+  Bound bound = {std::numeric_limits<double>::infinity(), "wind"};
+  for (const FieldSettings& field : scene_.fields) {
+    // A step that ends where a wind begins does not feel it.
+    if (field.type != FieldSettings::Type::wind || !is_active(field.start, field.stop, t)) continue;
+    bound.dt = std::min(bound.dt, kDragShare * field.response_time);
+  }
   for (const Emitter& emitter : emitters_) {
     if (!is_active(emitter.settings->start, emitter.settings->stop, t)) continue;
     const double dt = emitter.fastest > 0 ? particle_cfl * world.grid.dx() / emitter.fastest : emitter.interval;

@@ -91,7 +91,7 @@ class Sources {
   bool remove(World<Real, dim>& world, std::size_t s);
 
   const Scene& scene_;
-  double particle_volume_, spacing_, tolerance_, response_time_;
+  double particle_volume_, spacing_, tolerance_;
   double sink_speed_ = 0;  ///< of the fastest sink, m/s
   std::int64_t first_id_;
   std::vector<Emitter> emitters_;

@@ -23,6 +23,7 @@ class GlProgram {
   void set(const char* uniform, int x) const { glUniform1i(at(uniform), x); }
   void set(const char* uniform, const Vec3f& x) const { glUniform3fv(at(uniform), 1, x.e); }
   void set(const char* uniform, float x, float y) const { glUniform2f(at(uniform), x, y); }
+  void set(const char* uniform, float x, float y, float z, float w) const { glUniform4f(at(uniform), x, y, z, w); }
   void set(const char* uniform, const Matrix4& m) const { glUniformMatrix4fv(at(uniform), 1, GL_FALSE, m.data()); }
 
  private:
@@ -49,11 +50,24 @@ class GlName {
 using GlBuffer = GlName<&epoxy_glGenBuffers, &epoxy_glDeleteBuffers>;
 using GlVertexArray = GlName<&epoxy_glGenVertexArrays, &epoxy_glDeleteVertexArrays>;
 using GlTexture = GlName<&epoxy_glGenTextures, &epoxy_glDeleteTextures>;
+using GlFramebuffer = GlName<&epoxy_glGenFramebuffers, &epoxy_glDeleteFramebuffers>;
 
-/// Light of the day as GLSL: `vec3 lit(vec3 color, vec3 normal, float wrap)` with uniforms sun_direction, up (in the
-/// space of the normal), and `vec3 displayed(vec3 light)`, the tone of the ray-cast pictures (render/tone.h).
+/// The sun's shadows: what is nearest to it, and where a point of view space is in that picture.
+struct Shadows {
+  GLuint map = 0;          ///< texture of depths; 0: there are none
+  Matrix4 from_view = {};  ///< to [0, 1] in all directions
+};
+
+/// Light of the day as GLSL: `vec3 lit(vec3 color, vec3 normal, float wrap, vec3 position)` with uniforms
+/// sun_direction, up (in view space, as normal and position), and `vec3 displayed(vec3 light)`, the tone of the
+/// ray-cast pictures (render/tone.h).
 extern const char* const kDaylightGlsl;
 /// Sets these uniforms; the directions are of world space, `view` turns them.
-void set_daylight(const GlProgram& program, const View& scene, const Matrix4& view);
+void set_daylight(const GlProgram& program, const View& scene, const Matrix4& view, const Shadows& shadows = {});
+
+/// A plane that hides what lies beyond it, for vertex shaders: `void cut(vec3 world)`.
+extern const char* const kClipGlsl;
+/// Where `normal` . x > `offset`, x counting from `origin`; a zero normal hides nothing.
+void set_clip(const GlProgram& program, const Vec3d& normal, double offset, const Vec3d& origin);
 
 }  // namespace firn

@@ -83,7 +83,7 @@ Matrix4 OrbitCamera::view_matrix(const Vec3d& origin) const {
 Matrix4 OrbitCamera::projection_matrix(double aspect) const {
   const double half = half_height_per_distance(camera_), far = kFar * distance();
   Matrix4 m = {};
-  if (flat_) {
+  if (orthographic()) {
     const double height = half * distance();
     m[0] = static_cast<float>(1 / (height * aspect));
     m[5] = static_cast<float>(1 / height);
@@ -98,6 +98,42 @@ Matrix4 OrbitCamera::projection_matrix(double aspect) const {
   m[11] = -1;
   m[14] = static_cast<float>(2 * near * far / (near - far));
   return m;
+}
+
+void OrbitCamera::look_from(int axis) {
+  if (flat_) return;
+  Vec3d away = {};
+  away[axis] = distance();
+  camera_.up = world_up_;
+  camera_.position = camera_.target + away;
+  // Straight from above, the picture's right would be undefined; just beside it is as good.
+  if (norm(cross(normalized(away), world_up_)) < 1e-3) {
+    const Vec3d aside = world_up_[2] > 0.5 ? Vec3d{{0, -1, 0}} : Vec3d{{0, 0, 1}};
+    camera_.position += (1e-3 * distance()) * aside;
+  }
+}
+
+Ray OrbitCamera::ray(double x, double y, double aspect) const {
+  const Vec3d at = at_target(x, y, aspect);
+  if (!orthographic()) return {camera_.position, normalized(at - camera_.position)};
+  const Vec3d forward = normalized(camera_.target - camera_.position);
+  return {at - distance() * forward, forward};
+}
+
+Vec3d OrbitCamera::at_target(double x, double y, double aspect) const {
+  const Vec3d forward = normalized(camera_.target - camera_.position);
+  const Vec3d side = normalized(cross(forward, camera_.up));
+  const double height = half_height_per_distance(camera_) * distance();
+  return camera_.target + (height * aspect * x) * side + (height * y) * cross(side, forward);
+}
+
+std::optional<Vec2d> OrbitCamera::seen(const Vec3d& point, double aspect) const {
+  const Vec3d forward = normalized(camera_.target - camera_.position);
+  const Vec3d side = normalized(cross(forward, camera_.up)), away = point - camera_.position;
+  const double depth = orthographic() ? distance() : dot(away, forward);
+  if (depth < kNear * distance()) return std::nullopt;
+  const double height = half_height_per_distance(camera_) * depth;
+  return Vec2d{{dot(away, side) / (height * aspect), dot(away, cross(side, forward)) / height}};
 }
 
 Matrix4 product(const Matrix4& a, const Matrix4& b) {

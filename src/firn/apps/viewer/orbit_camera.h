@@ -3,11 +3,18 @@
 #include <firn/render/scene_view.h>
 
 #include <array>
+#include <optional>
 
 namespace firn {
 
 /// Column-major, as OpenGL takes it.
 using Matrix4 = std::array<float, 16>;
+
+/// A half line of sight.
+struct Ray {
+  Vec3d origin = {};
+  Vec3d direction = {};  ///< unit length
+};
 
 /// A camera that moves around a target. In 2D it looks along -z without perspective and cannot be turned.
 class OrbitCamera {
@@ -27,16 +34,27 @@ class OrbitCamera {
 
   const Camera& camera() const { return camera_; }
   bool flat() const { return flat_; }
+  /// Without perspective; what is at the target keeps its size. 2D is always so.
+  bool orthographic() const { return flat_ || orthographic_; }
+  void set_orthographic(bool orthographic) { orthographic_ = orthographic; }
+  /// From a world axis: 0 to 2 for +x, +y, +z; 3D only.
+  void look_from(int axis);
   double distance() const;
 
   /// View from world, where world coordinates count from `origin`: differences are formed in double precision.
   Matrix4 view_matrix(const Vec3d& origin) const;
   Matrix4 projection_matrix(double aspect) const;
+  /// Through a point of the picture, in [-1, 1] rightwards and upwards.
+  Ray ray(double x, double y, double aspect) const;
+  /// The point that is seen there at the target's distance, m.
+  Vec3d at_target(double x, double y, double aspect) const;
+  /// Where a point of the world appears, in [-1, 1]; nothing if it is behind the camera.
+  std::optional<Vec2d> seen(const Vec3d& point, double aspect) const;
 
  private:
   Camera camera_;
   Vec3d world_up_ = {{0, 1, 0}};
-  bool flat_ = false;
+  bool flat_ = false, orthographic_ = false;
 };
 
 /// a * b

@@ -1,22 +1,34 @@
 #pragma once
 
+#include <firn/apps/viewer/panel_state.h>
 #include <firn/apps/viewer/view_controls.h>
 
-#include <array>
-#include <cstddef>
-
+/// What Dear ImGui draws over the picture, inside a frame of it. Each of these returns true if colours have to be
+/// computed anew.
 namespace firn {
 
-/// What the panel tells beside the state of the controls.
-struct PanelNotes {
-  std::size_t drawn = 0;          ///< particles in the picture
-  bool thinned = false;           ///< fewer than there are, on software OpenGL
-  double frame_milliseconds = 0;  ///< of the last picture, CPU side
-  std::array<double, 2> range = {0, 1};
-};
+/// All of it: menus, the panel on the left, the side panel, the bar of colours, marks and messages.
+bool draw_panels(ViewControls& controls, const PanelNotes& notes, PanelState& state);
 
-/// The panel with buttons, texts and choices, the bar of colours, and the report of a failure, by Dear ImGui, inside a
-/// frame of it. True if a choice of colours changed.
-bool draw_panel(ViewControls& controls, const PanelNotes& notes);
+// Its parts.
+
+/// The bar at the top.
+bool draw_menus(ViewControls& controls, const PanelNotes& notes, PanelState& state);
+/// The tabs view, scene, plots and picked, at the right edge; returns its width, pixels.
+float draw_side_panel(ViewControls& controls, const PanelNotes& notes, PanelState& state, bool& recolor);
+/// Sliders for the numbers of the scene.
+void draw_scene_tab(ViewControls& controls, PanelState& state);
+void draw_plots_tab(ViewControls& controls, PanelState& state);
+void draw_picked_tab(ViewControls& controls, PanelState& state);
+/// Colour choices, for the panel and the view tab.
+bool draw_colors(ViewControls& controls, const PanelNotes& notes, PanelState& state);
+/// Bar of colours (`right` pixels from the edge), marks on particles, the hand.
+void draw_overlays(const ViewControls& controls, const PanelNotes& notes, float right);
+void draw_help(PanelState& state);
+/// Asks for the name of a scene file.
+void draw_save_dialog(PanelState& state);
+
+/// Notes where the widget drawn last is.
+void mark(PanelState& state, const std::string& label);
 
 }  // namespace firn

@@ -39,6 +39,7 @@ vec3 linear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)),
 
 void main() {
   vec4 at = view * vec4(position, 1.0);
+  cut(position);
   center = at.xyz;
   gl_Position = projection * at;
   gl_PointSize = max(height * projection[1][1] * radius / gl_Position.w, 1.0);
@@ -69,7 +70,7 @@ void main() {
   vec4 clip = projection * vec4(center + radius * normal, 1.0);
   gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
 #endif
-  pixel = vec4(displayed(lit(color, normal, wrap)), 1.0);
+  pixel = vec4(displayed(lit(color, normal, wrap, center + radius * normal)), 1.0);
 }
 )";
 
@@ -150,7 +151,7 @@ std::array<double, 2> sampled_color_range(const SnapshotColumn& column, std::siz
 }
 
 ParticleCloud::ParticleCloud(bool software)
-    : program_("particle", kVertexShader,
+    : program_("particle", std::string(kClipGlsl) + kVertexShader,
                std::string(software ? "" : "#define BALL_DEPTH\n") + kDaylightGlsl + kFragmentShader) {}
 
 void ParticleCloud::upload(const Snapshot& snapshot) {
@@ -249,13 +250,15 @@ void ParticleCloud::draw(const View& view, const CloudCamera& camera) const {
   program_.set("map", kMapUnit);
   program_.set("palette", kPaletteUnit);
   program_.set("every", static_cast<int>(every));
-  set_daylight(program_, view, camera.view);
+  set_clip(program_, camera.clip_normal, camera.clip_offset, origin_);
+  set_daylight(program_, view, camera.view, camera.shadows);
   glActiveTexture(GL_TEXTURE0 + kPaletteUnit);
   glBindTexture(GL_TEXTURE_2D, palette_.id());
   glActiveTexture(GL_TEXTURE0 + kMapUnit);
   glBindTexture(GL_TEXTURE_2D, map_.id());
   glBindVertexArray(array_.id());
   glEnable(GL_PROGRAM_POINT_SIZE);
+  glEnable(GL_CLIP_DISTANCE0);
   for (const Part& part : parts_) {
     if (part.begin == part.end) continue;
     program_.set("look", part.color);
@@ -265,6 +268,7 @@ void ParticleCloud::draw(const View& view, const CloudCamera& camera) const {
     bind_attributes(part.begin, every);
     glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>((part.end - part.begin + every - 1) / every));
   }
+  glDisable(GL_CLIP_DISTANCE0);
   glBindVertexArray(0);
 }
 

@@ -17,6 +17,9 @@ struct CloudCamera {
   Matrix4 view, projection;
   int height = 1;  ///< of the picture, pixels
   Thinning thinning = {};
+  Vec3d clip_normal = {};  ///< hides what is beyond; zero: nothing
+  double clip_offset = 0;  ///< m
+  Shadows shadows = {};
 };
 
 /// The particles of a snapshot as lit balls. A snapshot is copied to the graphics memory once, positions and the one

@@ -36,6 +36,19 @@ void RunPlayback::play() {
   const std::lock_guard lock(mutex_);
   if (status_.state == PlayState::paused && wanted_ >= status_.frame_count) want(1);
   status_.state = PlayState::playing;
+  stop_at_ = 0;
+  changed_.notify_all();
+}
+
+void RunPlayback::run_to(std::int64_t frame) {
+  const std::lock_guard lock(mutex_);
+  if (frame <= wanted_) {
+    status_.state = PlayState::paused;
+    want(frame);
+    return;
+  }
+  status_.state = PlayState::playing;
+  stop_at_ = frame;
   changed_.notify_all();
 }
 
@@ -60,12 +73,20 @@ void RunPlayback::reset() {
 
 void RunPlayback::seek(std::int64_t frame) {
   const std::lock_guard lock(mutex_);
+  if (status_.state == PlayState::playing) status_.state = PlayState::paused;
   want(frame);
 }
 
 void RunPlayback::advance(double seconds) {
   const std::lock_guard lock(mutex_);
-  if (status_.state != PlayState::playing || settled_ != wanted_ || wanted_ >= status_.frame_count) return;
+  if (status_.state != PlayState::playing || settled_ != wanted_) return;
+  if (stop_at_ > 0 && wanted_ >= stop_at_) {
+    status_.state = PlayState::paused;
+    stop_at_ = 0;
+    changed_.notify_all();
+    return;
+  }
+  if (wanted_ >= status_.frame_count) return;
   since_frame_ += seconds;
   // One frame at most: a slow window shows all of them later rather than some of them in time.
   if (since_frame_ * frame_rate_ >= 1) want(wanted_ + 1);
@@ -74,6 +95,7 @@ void RunPlayback::advance(double seconds) {
 void RunPlayback::run() {
   for (;;) {
     reread_series();
+    reread_numbers();
     std::int64_t wanted = 0;
     {
       std::unique_lock lock(mutex_);
@@ -107,8 +129,21 @@ void RunPlayback::reread_series() {
   if (files_.empty()) status_.message.clear();
   files_ = std::move(files);
   if (status_.state == PlayState::loading) status_.state = PlayState::paused;
-  status_.frame_count = static_cast<std::int64_t>(files_.size());
+  status_.frame_count = status_.last_frame = static_cast<std::int64_t>(files_.size());
   wanted_ = std::min(wanted_, status_.frame_count);
+  changed_.notify_all();
+}
+
+void RunPlayback::reread_numbers() {
+  const std::filesystem::path stats = folder_.parent_path() / "stats.csv";
+  std::error_code error;
+  const auto time = std::filesystem::last_write_time(stats, error);
+  if (error || time == numbers_time_) return;
+  numbers_time_ = time;
+  std::vector<FrameNumbers> numbers = read_frame_numbers(stats);
+  const std::lock_guard lock(mutex_);
+  numbers_ = std::move(numbers);
+  ++numbers_version_;
   changed_.notify_all();
 }
 

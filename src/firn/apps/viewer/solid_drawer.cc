@@ -59,7 +59,7 @@ uniform float fade_from, opacity;
 in vec3 normal, in_view;
 out vec4 pixel;
 void main() {
-  vec3 light = lit(color, normalize(normal), 0.0);
+  vec3 light = lit(color, normalize(normal), 0.0, in_view);
   float far = 1.0 - exp(-max(length(in_view) / fade_from - 1.0, 0.0));
   pixel = vec4(displayed(mix(light, horizon, far)), opacity);
 }
@@ -235,7 +235,39 @@ void SolidDrawer::draw_mesh(int first, int count, const Vec3d& center, const Mat
   glDrawArrays(GL_TRIANGLES, first, count);
 }
 
-void SolidDrawer::draw(const View& view, const OrbitCamera& camera, double aspect, const Vec3d& origin) const {
+void SolidDrawer::draw_boxes_and_spheres(const View& view, const Vec3d& origin, double thinnest) const {
+  glBindVertexArray(array_.id());
+  for (const DrawnBox& box : view.boxes) {
+    Vec3d half = box.half_size;
+    // A box of 2D may be without depth, which would leave its sides without a normal.
+    for (int i = 0; i < 3; ++i) half[i] = std::max(half[i], thinnest);
+    const Mat3d axes = box.rotation * diagonal(half);
+    draw_mesh(0, kBoxVertices, box.center - origin, axes, drawn(box.color, kColliderColor));
+  }
+  for (const DrawnSphere& sphere : view.spheres) {
+    const Mat3d axes = diagonal(constant_vector<double, 3>(sphere.radius));
+    draw_mesh(sphere_first_, sphere_count_, sphere.center - origin, axes, drawn(sphere.color, kColliderColor));
+  }
+}
+
+void SolidDrawer::draw_casters(const View& view, const Matrix4& view_matrix, const Matrix4& projection,
+                               const Vec3d& origin) const {
+  solid_.use();
+  solid_.set("view", view_matrix);
+  solid_.set("projection", projection);
+  solid_.set("opacity", 1.0F);
+  set_daylight(solid_, view, view_matrix);
+  draw_boxes_and_spheres(view, origin, 1e-6);
+  View casting;
+  for (const DrawnSolid& solid : view.solids) {
+    if (!solid.endless && !solid.glass) casting.solids.push_back(solid);
+  }
+  draw_solids(casting, origin, false);
+  glBindVertexArray(0);
+}
+
+void SolidDrawer::draw(const View& view, const OrbitCamera& camera, double aspect, const Vec3d& origin,
+                       const Shadows& shadows) const {
   const double far = kPlaneExtent * camera.distance();
   const Matrix4 matrix = camera.view_matrix(origin);
   solid_.use();
@@ -244,20 +276,9 @@ void SolidDrawer::draw(const View& view, const OrbitCamera& camera, double aspec
   solid_.set("horizon", Daylight{}.horizon());
   solid_.set("fade_from", static_cast<float>(camera.flat() ? 1e6 * far : 0.08 * far));
   solid_.set("opacity", 1.0F);
-  set_daylight(solid_, view, matrix);
+  set_daylight(solid_, view, matrix, shadows);
   glEnable(GL_DEPTH_TEST);
-  glBindVertexArray(array_.id());
-  for (const DrawnBox& box : view.boxes) {
-    Vec3d half = box.half_size;
-    // A box of 2D may be without depth, which would leave its sides without a normal.
-    for (int i = 0; i < 3; ++i) half[i] = std::max(half[i], 1e-4 * camera.distance());
-    const Mat3d axes = box.rotation * diagonal(half);
-    draw_mesh(0, kBoxVertices, box.center - origin, axes, drawn(box.color, kColliderColor));
-  }
-  for (const DrawnSphere& sphere : view.spheres) {
-    const Mat3d axes = diagonal(constant_vector<double, 3>(sphere.radius));
-    draw_mesh(sphere_first_, sphere_count_, sphere.center - origin, axes, drawn(sphere.color, kColliderColor));
-  }
+  draw_boxes_and_spheres(view, origin, 1e-4 * camera.distance());
   draw_solids(view, origin, false);
   glBindVertexArray(array_.id());
   const Camera& c = camera.camera();

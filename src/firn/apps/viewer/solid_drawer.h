@@ -15,7 +15,10 @@ class SolidDrawer {
 
   void draw_sky(const View& view, const OrbitCamera& camera, double aspect) const;
   /// Coordinates count from `origin`.
-  void draw(const View& view, const OrbitCamera& camera, double aspect, const Vec3d& origin) const;
+  void draw(const View& view, const OrbitCamera& camera, double aspect, const Vec3d& origin,
+            const Shadows& shadows = {}) const;
+  /// What casts shadows: all that has an end and is not of glass. Colours do not matter.
+  void draw_casters(const View& view, const Matrix4& view_matrix, const Matrix4& projection, const Vec3d& origin) const;
 
  private:
   /// A surface in the memory of the graphics card.
@@ -26,6 +29,7 @@ class SolidDrawer {
     int count = 0;
   };
 
+  void draw_boxes_and_spheres(const View& view, const Vec3d& origin, double thinnest) const;
   const Uploaded& upload(const std::shared_ptr<const ShapeSurface>& surface) const;
   void draw_solids(const View& view, const Vec3d& origin, bool glass) const;
   /// Over everything else: what is behind shines through, with no order among the panes.

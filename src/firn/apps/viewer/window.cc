@@ -5,17 +5,21 @@
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
-#include <firn/apps/viewer/particle_cloud.h>
-#include <firn/apps/viewer/solid_drawer.h>
+#include <firn/apps/viewer/panel.h>
+#include <firn/apps/viewer/recorder.h>
+#include <firn/apps/viewer/scene_painter.h>
+#include <firn/apps/viewer/start_page.h>
 #include <firn/apps/viewer/window.h>
+#include <firn/apps/viewer/window_display.h>
 #include <firn/core/error.h>
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 namespace firn {
@@ -26,80 +30,10 @@ constexpr double kSleep = 0.05;
 constexpr int kButtons = 3;
 /// Dear ImGui takes a picture or two to lay out what an event has opened.
 constexpr int kDrawsPerEvent = 3;
-
-std::string last_glfw_error() {
-  const char* text = nullptr;
-  return glfwGetError(&text) != GLFW_NO_ERROR && text != nullptr ? text : "no reason given";
-}
-
-[[noreturn]] void fail_to_open(const std::string& reason) {
-  throw Error(ErrorKind::resources,
-              fmt::format("cannot open a window ({}); without a display, `firn run` simulates and `firn render` makes "
-                          "pictures and a film of it",
-                          reason));
-}
-
-/// GLFW and its window, with a current context of OpenGL 3.3.
-class Display {
- public:
-  Display(int width, int height, const std::string& title) {
-    if (glfwInit() == GLFW_FALSE) fail_to_open(last_glfw_error());
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_DEPTH_BITS, 24);
-    window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
-    if (window_ == nullptr) {
-      const std::string reason = last_glfw_error();
-      glfwTerminate();
-      fail_to_open(reason);
-    }
-    glfwMakeContextCurrent(window_);
-    glfwSwapInterval(1);
-  }
-  ~Display() {
-    glfwDestroyWindow(window_);
-    glfwTerminate();
-  }
-  Display(const Display&) = delete;
-  Display& operator=(const Display&) = delete;
-  GLFWwindow* window() const { return window_; }
-
- private:
-  GLFWwindow* window_ = nullptr;
-};
-
-/// Dear ImGui on a window.
-class Interface {
- public:
-  explicit Interface(GLFWwindow* window) {
-    ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr;  // leaves no file behind
-    ImGui::StyleColorsDark();
-    ImGui::GetStyle().Colors[ImGuiCol_WindowBg].w = 0.85F;
-    ImGui_ImplGlfw_InitForOpenGL(window, false);
-    ImGui_ImplOpenGL3_Init("#version 330 core");
-  }
-  ~Interface() {
-    ImGui_ImplOpenGL3_Shutdown();
-    ImGui_ImplGlfw_Shutdown();
-    ImGui::DestroyContext();
-  }
-  Interface(const Interface&) = delete;
-  Interface& operator=(const Interface&) = delete;
-};
-
-bool is_software(std::string_view renderer) {
-  for (const char* name : {"llvmpipe", "softpipe", "swrast", "SWR", "Software"}) {
-    if (renderer.find(name) != std::string_view::npos) return true;
-  }
-  return false;
-}
-
-std::string_view renderer_name() {
-  const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  return name != nullptr ? name : "";
-}
+/// Wider windows begin with the side panel.
+constexpr int kWideWindow = 1000;
+/// A press and a release this close to each other are a click, pixels.
+constexpr double kClickReach = 4;
 
 ViewerWindow& of(GLFWwindow* window) { return *static_cast<ViewerWindow*>(glfwGetWindowUserPointer(window)); }
 
@@ -113,33 +47,57 @@ void install_callbacks(GLFWwindow* window) {
   glfwSetScrollCallback(window, [](GLFWwindow* w, double dx, double dy) { of(w).on_scroll(dx, dy); });
 }
 
+void fill(std::array<char, 512>& text, const std::string& value) {
+  text = {};
+  std::copy_n(value.begin(), std::min(value.size(), text.size() - 1), text.begin());
+}
+
 }  // namespace
 
 struct ViewerWindow::State {
-  State(const Scene& scene, FrameSource& source, const Options& wanted)
+  explicit State(const Options& wanted)
       : options(wanted),
         display(wanted.width, wanted.height, wanted.title),
         interface(display.window()),
-        software(is_software(renderer_name())),
-        controls(scene, source),
-        cloud(software) {}
+        software(display.software()),
+        start_page(wanted.gallery) {
+    panel.side = wanted.width >= kWideWindow;
+    panel.soft_light = !software;
+    notes.has_start_page = static_cast<bool>(wanted.open);
+    ImGui::GetIO().MouseDoubleClickTime = static_cast<float>(wanted.double_click);
+  }
 
+  void look_at(const Scene& scene, FrameSource& source);
+  void leave();
+  void open(const std::filesystem::path& path);
+  PicturePlace place() const;
   void draw_scene();
   void draw_interface();
   void read_picture();
+  void serve();
+  void record();
+  void guarded(const std::function<void()>& work);
+  bool key_of_window(int key, int mods);
+  void click();
+  bool on_start_page() const { return controls == nullptr; }
 
   const Options options;
-  Display display;  // first: all below needs its context
-  Interface interface;
+  WindowDisplay display;  // first: all below needs its context
+  WindowInterface interface;
   const bool software;
-  ViewControls controls;
-  ParticleCloud cloud;
-  SolidDrawer solids;
+  StartPage start_page;
+  std::optional<Show> shown;  // before the controls, which refer to its source
+  std::unique_ptr<ViewControls> controls;
+  std::unique_ptr<ScenePainter> painter;
+  std::unique_ptr<Recorder> recorder;
+  double film_rate = 24;
+  std::string start_message;
+  PanelState panel;
   PanelNotes notes;
   Times times;
   Image picture;
   std::optional<double> last_draw;  // s of GLFW's clock
-  double cursor[2] = {-1, -1};
+  double cursor[2] = {-1, -1}, pressed_at[2] = {-1, -1};
   std::array<bool, kButtons> down = {}, clicked = {};  // clicked: pressed since the last picture, perhaps released
   bool shift = false;
   bool dragging = false;
@@ -147,44 +105,88 @@ struct ViewerWindow::State {
   int wanted_draws = kDrawsPerEvent;  // pictures that what happened asks for
 };
 
-ViewerWindow::ViewerWindow(const Scene& scene, FrameSource& source, const Options& options)
-    : state_(std::make_unique<State>(scene, source, options)) {
+ViewerWindow::ViewerWindow(const Options& options) : state_(std::make_unique<State>(options)) {
   glfwSetWindowUserPointer(state_->display.window(), this);
   install_callbacks(state_->display.window());
 }
 
-ViewerWindow::~ViewerWindow() = default;
-
-void ViewerWindow::require_display() {
-  if (glfwInit() == GLFW_FALSE) fail_to_open(last_glfw_error());
-  glfwTerminate();
+ViewerWindow::ViewerWindow(const Scene& scene, FrameSource& source, const Options& options) : ViewerWindow(options) {
+  state_->look_at(scene, source);
 }
 
-ViewControls& ViewerWindow::controls() { return state_->controls; }
+ViewerWindow::~ViewerWindow() = default;
+
+void ViewerWindow::require_display() { WindowDisplay::require(); }
+
+bool ViewerWindow::has_scene() const { return state_->controls != nullptr; }
+ViewControls& ViewerWindow::controls() { return *state_->controls; }
+PanelState& ViewerWindow::panel() { return state_->panel; }
 const PanelNotes& ViewerWindow::notes() const { return state_->notes; }
 const ViewerWindow::Times& ViewerWindow::times() const { return state_->times; }
 bool ViewerWindow::software() const { return state_->software; }
 unsigned ViewerWindow::error() const { return glGetError(); }
 
+void ViewerWindow::State::look_at(const Scene& scene, FrameSource& source) {
+  controls = std::make_unique<ViewControls>(scene, source);
+  painter = std::make_unique<ScenePainter>(software, options.moving_budget);
+  const std::string name = scene.file.stem().empty() ? "scene" : scene.file.stem().string();
+  recorder = std::make_unique<Recorder>(options.record_stem.empty() ? name + "_view" : options.record_stem);
+  film_rate = scene.render.film_rate_of(scene.frame_rate);
+  fill(panel.save_path, name + "_changed.toml");
+  panel.knobs_of.clear();
+  panel.numbers.clear();
+  panel.run_to = 0;
+  notes.message.clear();
+  wanted_draws = kDrawsPerEvent;
+}
+
+void ViewerWindow::State::leave() {
+  guarded([&] {
+    if (recorder) recorder->stop();
+  });
+  controls.reset();
+  painter.reset();
+  recorder.reset();
+  shown.reset();
+  wanted_draws = kDrawsPerEvent;
+}
+
+void ViewerWindow::show(Show show) {
+  State& s = *state_;
+  s.leave();
+  s.shown = std::move(show);
+  glfwSetWindowTitle(s.display.window(), s.shown->title.c_str());
+  s.look_at(s.shown->scene, *s.shown->source);
+  if (!s.options.paused) s.shown->source->play();
+}
+
+void ViewerWindow::State::open(const std::filesystem::path& path) {
+  try {
+    Show next = options.open(path);
+    start_message.clear();
+    of(display.window()).show(std::move(next));
+  } catch (const std::exception& error) {
+    start_message = error.what();
+  }
+}
+
+/// Where the mouse is.
+PicturePlace ViewerWindow::State::place() const {
+  int width = 0, height = 0;
+  glfwGetWindowSize(display.window(), &width, &height);
+  const double w = std::max(width, 1), h = std::max(height, 1);
+  return {2 * (cursor[0] + 0.5) / w - 1, 1 - 2 * (cursor[1] + 0.5) / h, w / h};
+}
+
 void ViewerWindow::State::draw_scene() {
   int width = 0, height = 0;
   glfwGetFramebufferSize(display.window(), &width, &height);
-  glViewport(0, 0, width, height);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  if (width == 0 || height == 0 || controls.snapshot() == nullptr) return;
-  const View view = controls.view();
-  const OrbitCamera& camera = controls.camera();
-  const double aspect = static_cast<double>(width) / height;
-  const bool moving = controls.moving(glfwGetTime());
-  const Thinning thinning =
-      thin(cloud.size(), software && moving ? options.moving_budget : 0, controls.snapshot()->dimension);
-  notes.thinned = thinning.every > 1;
-  notes.drawn = cloud.size() / thinning.every;
-  notes.range = cloud.range();
-  solids.draw_sky(view, camera, aspect);
-  glEnable(GL_DEPTH_TEST);
-  cloud.draw(view, {camera.view_matrix(cloud.origin()), camera.projection_matrix(aspect), height, thinning});
-  solids.draw(view, camera, aspect, cloud.origin());
+  if (on_start_page()) {
+    glViewport(0, 0, width, height);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    return;
+  }
+  painter->draw(*controls, width, height, controls->moving(glfwGetTime()), panel.soft_light, notes);
 }
 
 void ViewerWindow::State::draw_interface() {
@@ -195,26 +197,95 @@ void ViewerWindow::State::draw_interface() {
   io.MousePos = {static_cast<float>(cursor[0]), static_cast<float>(cursor[1])};
   for (std::size_t b = 0; b < kButtons; ++b) io.MouseDown[b] = down[b] || std::exchange(clicked[b], false);
   ImGui::NewFrame();
-  if (draw_panel(controls, notes)) recolor = true;
+  std::optional<std::filesystem::path> opened;
+  if (on_start_page()) {
+    opened = start_page.draw(start_message, panel.items);
+  } else if (draw_panels(*controls, notes, panel)) {
+    recolor = true;
+  }
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  if (opened) open(*opened);
+}
+
+/// What goes wrong becomes a message in the window.
+void ViewerWindow::State::guarded(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const std::exception& error) {
+    notes.message = error.what();
+  }
+  wanted_draws = kDrawsPerEvent;
+}
+
+/// Does what the panels have asked for.
+void ViewerWindow::State::serve() {
+  if (on_start_page()) return;
+  if (std::exchange(panel.wants_picture, false)) {
+    guarded([&] {
+      of(display.window()).capture();
+      notes.message = fmt::format("wrote {}", recorder->picture(picture).string());
+    });
+  }
+  if (std::exchange(panel.wants_film, false)) {
+    guarded([&] {
+      if (recorder->recording()) {
+        const auto path = recorder->stop();
+        notes.message = path ? fmt::format("wrote {}, {} pictures", path->string(), recorder->pictures())
+                             : "the film had no picture: they come with the frames, so play while it records";
+      } else {
+        int width = 0, height = 0;
+        glfwGetFramebufferSize(display.window(), &width, &height);
+        recorder->start(width, height, film_rate);
+        notes.message =
+            fmt::format("recording {}: a picture for every new frame, until v", recorder->film_path().string());
+      }
+    });
+  }
+  if (auto path = std::exchange(panel.wants_save, std::nullopt)) {
+    guarded([&] {
+      save_scene(*path, controls->scene(), controls->look(), controls->source().changes());
+      notes.message = fmt::format("wrote {}", *path);
+    });
+  }
+  notes.recording = recorder->recording();
+  notes.pictures = recorder->pictures();
+  if (std::exchange(panel.wants_start_page, false) && notes.has_start_page) leave();
+}
+
+/// A new frame becomes a picture of the film, panels included if they are seen.
+void ViewerWindow::State::record() {
+  if (on_start_page() || !recorder->recording()) return;
+  guarded([&] {
+    read_picture();
+    recorder->add(picture);
+    if (!recorder->recording()) {
+      notes.message =
+          fmt::format("the window changed its size, which ends the film: {}", recorder->film_path().string());
+    }
+  });
+  notes.recording = recorder->recording();
+  notes.pictures = recorder->pictures();
 }
 
 void ViewerWindow::draw() {
   State& s = *state_;
   glfwPollEvents();
+  s.serve();
   const double start = glfwGetTime();
-  s.controls.source().advance(s.last_draw ? start - *s.last_draw : 0);
+  bool fresh = false;
+  if (!s.on_start_page()) {
+    s.controls->source().advance(s.last_draw ? start - *s.last_draw : 0);
+    fresh = s.controls->update();
+    s.painter->update(*s.controls, fresh, std::exchange(s.recolor, false));
+  }
   s.last_draw = start;
-  const bool fresh = s.controls.update();
-  if (fresh) s.cloud.upload(*s.controls.snapshot());
-  if (fresh || s.recolor) s.cloud.color(*s.controls.snapshot(), s.controls.view());
-  s.recolor = false;
   const double uploaded = glfwGetTime();
   if (fresh) s.times.upload = uploaded - start;
   s.draw_scene();
   s.draw_interface();
   s.times.draw = glfwGetTime() - uploaded;
+  if (fresh) s.record();
   s.notes.frame_milliseconds = 1e3 * (s.times.draw + (fresh ? s.times.upload : 0));
   s.wanted_draws = std::max(s.wanted_draws - 1, 0);
   glfwSwapBuffers(s.display.window());
@@ -226,20 +297,30 @@ void ViewerWindow::run() {
   bool was_moving = false;
   while (glfwWindowShouldClose(s.display.window()) == GLFW_FALSE) {
     glfwPollEvents();
-    const SourceStatus now = s.controls.source().status();
-    const bool changed = now.published != shown.published || now.state != shown.state || now.busy != shown.busy ||
-                         now.frame_count != shown.frame_count || now.message != shown.message;
-    const bool moving = s.controls.moving(glfwGetTime());
-    // Software OpenGL would take the simulation's processors for pictures that do not differ.
-    const bool playback = s.controls.source().seekable() && now.state == PlayState::playing;
-    if (changed || s.wanted_draws > 0 || moving || was_moving || playback || s.recolor || s.dragging) {
+    bool wanted = s.wanted_draws > 0 || s.recolor || s.dragging || was_moving;
+    if (s.on_start_page()) {
+      wanted = wanted || s.start_page.loading();
+    } else {
+      FrameSource& source = s.controls->source();
+      const SourceStatus now = source.status();
+      const bool changed = now.published != shown.published || now.state != shown.state || now.busy != shown.busy ||
+                           now.frame_count != shown.frame_count || now.message != shown.message ||
+                           now.note != shown.note || now.waits_for_reset != shown.waits_for_reset;
+      was_moving = s.controls->moving(glfwGetTime());
+      // Software OpenGL would take the simulation's processors for pictures that do not differ.
+      const bool playback = source.follows_clock() && now.state == PlayState::playing;
+      wanted = wanted || changed || was_moving || playback;
       shown = now;
-      was_moving = moving;
+    }
+    if (wanted) {
       draw();
     } else {
       glfwWaitEventsTimeout(kSleep);
     }
   }
+  s.guarded([&] {
+    if (s.recorder) s.recorder->stop();
+  });
 }
 
 void ViewerWindow::State::read_picture() {
@@ -258,38 +339,83 @@ void ViewerWindow::State::read_picture() {
 const Image& ViewerWindow::capture() {
   // What is in the back buffer after a swap is undefined: the picture is drawn once more, and not shown.
   state_->draw_scene();
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  if (ImGui::GetDrawData() != nullptr) ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   state_->read_picture();
   return state_->picture;
 }
 
+/// Keys that are about the window; true if it was one of them.
+bool ViewerWindow::State::key_of_window(int key, int mods) {
+  switch (key) {
+    case GLFW_KEY_ESCAPE:
+      if (panel.help || panel.save_dialog) {
+        panel.help = panel.save_dialog = false;
+      } else {
+        panel.wants_start_page = true;
+      }
+      return true;
+    case GLFW_KEY_F1:
+      panel.help = !panel.help;
+      return true;
+    case GLFW_KEY_SLASH:
+      // Where it is without Shift, too: the key with the question mark.
+      panel.help = !panel.help;
+      return true;
+    case GLFW_KEY_TAB:
+      panel.side = !panel.side;
+      return true;
+    case GLFW_KEY_H:
+      panel.hidden = !panel.hidden;
+      return true;
+    case GLFW_KEY_L:
+      panel.soft_light = !panel.soft_light;
+      return true;
+    case GLFW_KEY_I:
+      panel.wants_picture = true;
+      return true;
+    case GLFW_KEY_V:
+      panel.wants_film = true;
+      return true;
+    case GLFW_KEY_S:
+      panel.save_dialog = true;
+      return true;
+    case GLFW_KEY_B:
+      controls->drop_at(place());
+      return true;
+    case GLFW_KEY_O:
+      controls->place_collider_at(place());
+      return true;
+    default:
+      return (mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) != 0;
+  }
+}
+
 void ViewerWindow::on_key(int key, int scancode, int action, int mods) {
-  state_->wanted_draws = kDrawsPerEvent;
-  ImGui_ImplGlfw_KeyCallback(state_->display.window(), key, scancode, action, mods);
-  if (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput) return;
+  State& s = *state_;
+  s.wanted_draws = kDrawsPerEvent;
+  ImGui_ImplGlfw_KeyCallback(s.display.window(), key, scancode, action, mods);
+  if (action == GLFW_RELEASE || s.on_start_page()) return;
+  if (ImGui::GetIO().WantTextInput && key != GLFW_KEY_ESCAPE) return;
   // Stepping may repeat while the key is held; anything else toggles or begins anew.
   if (action == GLFW_REPEAT && key != GLFW_KEY_PERIOD) return;
-  switch (key) {
-    case GLFW_KEY_SPACE:
-      state_->controls.key(' ');
-      break;
-    case GLFW_KEY_PERIOD:
-      state_->controls.key('.');
-      break;
-    case GLFW_KEY_R:
-      state_->controls.key('r');
-      break;
-    case GLFW_KEY_F:
-      state_->controls.key('f');
-      break;
-    default:
-      break;
+  if (s.key_of_window(key, mods)) return;
+  constexpr std::pair<int, char> kKeys[] = {
+      {GLFW_KEY_SPACE, ' '}, {GLFW_KEY_PERIOD, '.'}, {GLFW_KEY_R, 'r'}, {GLFW_KEY_F, 'f'}, {GLFW_KEY_P, 'p'},
+      {GLFW_KEY_1, '1'},     {GLFW_KEY_2, '2'},      {GLFW_KEY_3, '3'}, {GLFW_KEY_G, 'g'}, {GLFW_KEY_C, 'c'}};
+  for (const auto& [number, character] : kKeys) {
+    if (number == key) s.controls->key(character);
   }
 }
 
 void ViewerWindow::on_character(unsigned code) {
   state_->wanted_draws = kDrawsPerEvent;
   ImGui_ImplGlfw_CharCallback(state_->display.window(), code);
+}
+
+/// A button that was pressed and released without moving the mouse.
+void ViewerWindow::State::click() {
+  controls->pick_at(place());
+  if (controls->picked().kind != Picked::Kind::nothing && panel.side) panel.tab = "Picked";
 }
 
 void ViewerWindow::on_button(int button, int action, int mods) {
@@ -300,8 +426,24 @@ void ViewerWindow::on_button(int button, int action, int mods) {
   s.down[static_cast<std::size_t>(button)] = pressed;
   if (pressed) s.clicked[static_cast<std::size_t>(button)] = true;
   s.shift = (mods & GLFW_MOD_SHIFT) != 0;
+  if (s.on_start_page()) return;
+  const bool free = !ImGui::GetIO().WantCaptureMouse;
+  const bool left = button == GLFW_MOUSE_BUTTON_LEFT;
+  if (pressed && free) {
+    s.pressed_at[0] = s.cursor[0];
+    s.pressed_at[1] = s.cursor[1];
+    if (left && (mods & GLFW_MOD_CONTROL) != 0 && s.controls->begin_grab(s.place())) return;
+  }
+  if (!pressed && left && s.controls->grabbed()) {
+    s.controls->end_grab();
+    return;
+  }
+  if (!pressed && left && s.dragging &&
+      std::hypot(s.cursor[0] - s.pressed_at[0], s.cursor[1] - s.pressed_at[1]) < kClickReach) {
+    s.click();
+  }
   const bool any = std::find(s.down.begin(), s.down.end(), true) != s.down.end();
-  s.dragging = any && (s.dragging || !ImGui::GetIO().WantCaptureMouse);
+  s.dragging = any && (s.dragging || free);
 }
 
 void ViewerWindow::on_cursor(double x, double y) {
@@ -310,17 +452,22 @@ void ViewerWindow::on_cursor(double x, double y) {
   s.cursor[0] = x;
   s.cursor[1] = y;
   s.wanted_draws = kDrawsPerEvent;
+  if (s.on_start_page()) return;
+  if (s.controls->grabbed()) {
+    s.controls->move_grab(s.place());
+    return;
+  }
   if (!s.dragging) return;
   int width = 0, height = 0;
   glfwGetWindowSize(s.display.window(), &width, &height);
   const auto kind = s.down[GLFW_MOUSE_BUTTON_LEFT] && !s.shift ? ViewControls::Drag::orbit : ViewControls::Drag::pan;
-  s.controls.drag(kind, dx / std::max(height, 1), -dy / std::max(height, 1));
+  s.controls->drag(kind, dx / std::max(height, 1), -dy / std::max(height, 1));
 }
 
 void ViewerWindow::on_scroll(double dx, double dy) {
   state_->wanted_draws = kDrawsPerEvent;
   ImGui_ImplGlfw_ScrollCallback(state_->display.window(), dx, dy);
-  if (!ImGui::GetIO().WantCaptureMouse) state_->controls.scroll(dy);
+  if (!state_->on_start_page() && !ImGui::GetIO().WantCaptureMouse) state_->controls->scroll(dy);
 }
 
 }  // namespace firn

@@ -1,13 +1,23 @@
 #pragma once
 
-#include <firn/apps/viewer/panel.h>
+#include <firn/apps/viewer/gallery.h>
+#include <firn/apps/viewer/panel_state.h>
 #include <firn/apps/viewer/view_controls.h>
 #include <firn/render/image.h>
 
+#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace firn {
+
+/// What a window shows: a scene and where its frames come from.
+struct Show {
+  Scene scene;
+  std::unique_ptr<FrameSource> source;
+  std::string title;
+};
 
 /// The window of the viewer. There is one at a time, in the main thread.
 class ViewerWindow {
@@ -17,6 +27,15 @@ class ViewerWindow {
     std::string title = "Firn";
     /// Particles drawn while the camera moves on software OpenGL; 0: all of them.
     std::size_t moving_budget = 30000;
+    /// Scenes of the start page, and how one is opened. Error as load_scene is shown on the page.
+    std::vector<GalleryEntry> gallery = {};
+    std::function<Show(const std::filesystem::path&)> open = {};
+    /// Folder and beginning of the names of pictures and films; "" for the scene's name in the present folder.
+    std::string record_stem = {};
+    /// A new scene waits for the space bar.
+    bool paused = true;
+    /// Between the clicks of a double click at most, s.
+    double double_click = 0.4;
   };
   /// Time of one picture on the side of the CPU, s.
   struct Times {
@@ -27,11 +46,16 @@ class ViewerWindow {
   /// Throws Error (resources) where there is no display: before a simulation is built that nobody could see.
   static void require_display();
 
-  /// Throws Error (resources) where there is no display or no OpenGL 3.3.
+  /// The start page. Throws Error (resources) where there is no display or no OpenGL 3.3.
+  explicit ViewerWindow(const Options& options);
+  /// The same with a scene, whose source must outlive the window.
   ViewerWindow(const Scene& scene, FrameSource& source, const Options& options);
   ~ViewerWindow();
   ViewerWindow(const ViewerWindow&) = delete;
   ViewerWindow& operator=(const ViewerWindow&) = delete;
+
+  /// Shows another scene instead of the present one or the start page.
+  void show(Show show);
 
   /// Until the user closes it. Sleeps while nothing changes.
   void run();
@@ -40,7 +64,10 @@ class ViewerWindow {
   /// The picture drawn last, with the panel.
   const Image& capture();
 
+  /// False on the start page.
+  bool has_scene() const;
   ViewControls& controls();
+  PanelState& panel();
   const PanelNotes& notes() const;
   const Times& times() const;
   bool software() const;

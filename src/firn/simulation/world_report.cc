@@ -1,0 +1,62 @@
+#include <firn/measure/output_columns.h>
+#include <firn/scene/vary_parameters.h>
+#include <firn/simulation/world_report.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace firn {
+
+template <class Real, int dim>
+Snapshot snapshot_of(const World<Real, dim>& world, const Scene& scene, const WorldPlan& plan) {
+  Snapshot snapshot;
+  snapshot.dimension = dim;
+  snapshot.time = world.t;
+  snapshot.cell_size = world.grid.dx();
+  for (const BodySettings& body : scene.bodies) snapshot.bodies.push_back(body.name);
+  for (const EmitterSettings& emitter : scene.emitters) snapshot.bodies.push_back(emitter.name);
+  double smallest = scene.emitters.empty() ? 0 : plan.particle_volume;
+  for (const WorldPlan::Body& body : plan.bodies) {
+    const double each = body.volume / static_cast<double>(body.particles);
+    smallest = smallest == 0 ? each : std::min(smallest, each);
+  }
+  snapshot.particle_spacing = std::pow(smallest, 1.0 / dim);
+  const std::vector<Parameter> varied = varied_parameters(scene);
+  for (std::size_t m = 0; m < world.materials.size(); ++m) {
+    const auto& material = world.materials[m];
+    const MaterialSettings& settings = scene.materials[m];
+    append_to_snapshot<Real, dim>(snapshot, material.particles, material.model, material.parameters,
+                                  {material.name, settings.model, settings.preset, varied}, world.grid.dx(),
+                                  world.transfer.kernel);
+  }
+  return snapshot;
+}
+
+template <class Real, int dim>
+std::string failure_text(const World<Real, dim>& world, const ParticleFailure& failure, double dt) {
+  const auto& material = world.materials[failure.material];
+  Mat<double, dim> F;
+  std::copy_n(failure.strain.begin(), dim * dim, F.e);
+  Vec<double, dim> v;
+  std::copy_n(failure.velocity.begin(), dim, v.e);
+  return fmt::format(
+      "step {} at t = {:.6g} s with dt = {:.3g} s: particle {} of \"{}\" cannot go on, {}; x = ({:.4g}) m, speed "
+      "{:.4g} m/s, F = ({:.4g}), J = {:.4g}. The likely cause is a time step too long for what happens there: lower "
+      "limits.elastic_cfl or limits.max_dt, use a smaller cell size, or soften material.{}",
+      world.steps, world.t, dt, failure.id, material.name, failure.cause, fmt::join(failure.position, ", "), norm(v),
+      fmt::join(failure.strain, ", "), determinant(F), material.name);
+}
+
+#define FIRN_INSTANTIATE(Real, dim)                                                                  \
+  template Snapshot snapshot_of<Real, dim>(const World<Real, dim>&, const Scene&, const WorldPlan&); \
+  template std::string failure_text<Real, dim>(const World<Real, dim>&, const ParticleFailure&, double);
+FIRN_INSTANTIATE(float, 2)
+FIRN_INSTANTIATE(float, 3)
+FIRN_INSTANTIATE(double, 2)
+FIRN_INSTANTIATE(double, 3)
+#undef FIRN_INSTANTIATE
+
+}  // namespace firn

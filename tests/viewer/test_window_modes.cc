@@ -1,0 +1,386 @@
+// What the keys and the panels of the window do, seen in its picture.
+
+#include <firn/core/error.h>
+#include <firn/render/film.h>
+#include <firn/scene/resolved.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "support/temporary_folder.h"
+#include "viewer/reference_picture.h"
+#include "viewer/window_events.h"
+#include "viewer/window_fixture.h"
+
+namespace firn {
+namespace {
+
+using namespace std::chrono_literals;
+using test::difference;
+using test::find;
+using test::Found;
+using test::kHeight;
+using test::kWidth;
+using test::red;
+
+/// A window with a ball that can be changed, at its first frame.
+class WindowModes : public test::Window {
+ protected:
+  void SetUp() override {
+    Window::SetUp();
+    if (IsSkipped()) return;
+    options_of_window_ = options_;
+    options_of_window_.record_stem = (folder_.path() / "record").string();
+    open(scene_);
+  }
+  void open(const Scene& scene) {
+    window_.reset();
+    player_ = std::make_unique<SimulationPlayer>(scene);
+    window_ = std::make_unique<ViewerWindow>(scene, *player_, options_of_window_);
+    ASSERT_TRUE(paused_at(*window_, 1));
+    rest(*window_);
+  }
+  ViewControls& controls() { return window_->controls(); }
+  bool has(const std::string& item) { return window_->panel().items.contains(item); }
+  const Image& picture(const std::string& name) {
+    const Image& image = window_->capture();
+    if (const char* folder = std::getenv("FIRN_TEST_PICTURES"))
+      write_png(std::string(folder) + "/" + name + ".png", image);
+    return image;
+  }
+  /// Goes on drawing until the source has taken what it was told.
+  bool settles() {
+    return reaches(*window_, [](const SourceStatus& s) { return !s.busy && s.state != PlayState::playing; });
+  }
+  void step_to(std::int64_t frame) {
+    while (controls().status().last_frame < frame) {
+      const std::int64_t next = controls().status().last_frame + 1;
+      press(*window_, GLFW_KEY_PERIOD);
+      ASSERT_TRUE(reaches(*window_, [&](const SourceStatus& s) { return s.frame.frame == next && !s.busy; }));
+    }
+  }
+  void TearDown() override {
+    if (window_) {
+      EXPECT_EQ(window_->error(), 0U);
+    }
+    window_.reset();
+  }
+
+  TemporaryFolder folder_;
+  ViewerWindow::Options options_of_window_;
+  std::unique_ptr<SimulationPlayer> player_;
+  std::unique_ptr<ViewerWindow> window_;
+};
+
+TEST_F(WindowModes, PerspectiveComesAndGoes) {
+  const Image before = window_->capture();
+  const test::WindowEvents events("test");
+  events.key('p');
+  rest(*window_);
+  rest(*window_);
+  EXPECT_TRUE(controls().camera().orthographic());
+  const Image& orthographic = picture("mode_orthographic");
+  EXPECT_GT(difference(before, orthographic), 0.005);
+  const Found ball = find(orthographic, red);
+  // The ball as it is at the target's distance, without what perspective adds.
+  const double radius = 0.4 / 4 / std::tan(20 * M_PI / 180) * kHeight / 2;
+  EXPECT_NEAR(std::sqrt(ball.count / M_PI), radius, 0.06 * radius);
+  press(*window_, GLFW_KEY_P);
+  rest(*window_);
+  EXPECT_LT(difference(before, window_->capture()), 1e-3);
+}
+
+TEST_F(WindowModes, TheGridTakesTheParticlesPlace) {
+  step_to(2);
+  const Image before = window_->capture();
+  const int all = find(before, red).count;
+  press(*window_, GLFW_KEY_G);
+  ASSERT_TRUE(reaches(*window_, [this](const SourceStatus& s) { return !s.busy && player_->grid() != nullptr; }));
+  window_->draw();
+  const Image both = picture("mode_both");
+  EXPECT_GT(difference(before, both), 0.01);
+  const auto yellow = [](const std::uint8_t* rgb) { return rgb[0] > 150 && rgb[1] > 150 && rgb[2] < 90; };
+  EXPECT_GT(find(both, yellow).count, 50) << "arrows of the fastest nodes";
+  EXPECT_EQ(find(before, yellow).count, 0);
+  press(*window_, GLFW_KEY_G);
+  EXPECT_EQ(find(picture("mode_grid"), red).count, 0);
+  press(*window_, GLFW_KEY_G);
+  EXPECT_EQ(find(window_->capture(), red).count, all);
+}
+
+TEST_F(WindowModes, TheClipPlaneHidesAHalf) {
+  const Found whole = find(window_->capture(), red);
+  press(*window_, GLFW_KEY_C);
+  const Found half = find(picture("mode_clip"), red);
+  EXPECT_NEAR(half.count, 0.5 * whole.count, 0.08 * whole.count);
+  EXPECT_LT(half.x, whole.x - 10) << "what has a larger x is hidden";
+  press(*window_, GLFW_KEY_TAB);
+  click(*window_, "tab View");
+  click(*window_, "clip flipped");
+  press(*window_, GLFW_KEY_TAB);
+  EXPECT_GT(find(window_->capture(), red).x, whole.x + 10);
+  press(*window_, GLFW_KEY_C);
+  EXPECT_EQ(find(window_->capture(), red).count, whole.count);
+}
+
+TEST_F(WindowModes, SoftLightThrowsShadowsAndDarkensCorners) {
+  Scene scene = scene_;
+  scene.bodies[0].position[1] = 0.5;
+  scene.camera.position = Vec3d{{0, 2.2, 3.4}};
+  scene.camera.target = Vec3d{{0, 0.3, 0}};
+  open(scene);
+  ASSERT_FALSE(window_->panel().soft_light) << "not by itself on software OpenGL";
+  const Image before = picture("mode_hard");
+  press(*window_, GLFW_KEY_L);
+  const Image after = picture("mode_soft");
+  // The sun stands to the upper left in front, so that the shadow falls behind the ball, to the right.
+  const auto at = controls().camera().seen({{0.55, 0, -0.6}}, static_cast<double>(kWidth) / kHeight);
+  const int x = static_cast<int>((1 + (*at)[0]) / 2 * kWidth), y = static_cast<int>((1 - (*at)[1]) / 2 * kHeight);
+  const auto brightness = [&](const Image& image, int px, int py) {
+    int sum = 0;
+    for (int j = -2; j <= 2; ++j) {
+      for (int i = -2; i <= 2; ++i) sum += image.pixel(px + i, py + j)[1];
+    }
+    return sum / 25.0;
+  };
+  EXPECT_LT(brightness(after, x, y), 0.85 * brightness(before, x, y));
+  EXPECT_NEAR(brightness(after, 620, 440), brightness(before, 620, 440), 6) << "far away the sun still shines";
+  press(*window_, GLFW_KEY_L);
+  EXPECT_LT(difference(before, window_->capture()), 1e-3);
+}
+
+TEST_F(WindowModes, ASliderChangesTheMaterialWhileItRuns) {
+  press(*window_, GLFW_KEY_TAB);
+  window_->draw();
+  const double before = scene_.materials[0].parameters.at("youngs_modulus");
+  click(*window_, "material jelly: youngs_modulus", 0.9);
+  EXPECT_GT(controls().scene().materials[0].parameters.at("youngs_modulus"), 5 * before);
+  ASSERT_TRUE(settles());
+  EXPECT_FALSE(controls().status().waits_for_reset);
+  picture("mode_sliders");
+  click(*window_, "material jelly: density", 0.95);
+  ASSERT_TRUE(reaches(*window_, [](const SourceStatus& s) { return s.waits_for_reset && !s.busy; }));
+  EXPECT_GT(controls().scene().materials[0].density, 2 * scene_.materials[0].density);
+  press(*window_, GLFW_KEY_R);
+  ASSERT_TRUE(paused_at(*window_, 1));
+  EXPECT_FALSE(controls().status().waits_for_reset);
+}
+
+TEST_F(WindowModes, AMenuGivesABodyAnotherSubstance) {
+  click(*window_, "Material");
+  click(*window_, "material jelly");
+  window_->draw();
+  click(*window_, "honey");
+  EXPECT_EQ(controls().scene().materials[0].preset, "honey");
+  ASSERT_TRUE(reaches(*window_, [](const SourceStatus& s) { return s.waits_for_reset && !s.busy; }));
+  press(*window_, GLFW_KEY_R);
+  ASSERT_TRUE(paused_at(*window_, 1));
+  rest(*window_);
+  EXPECT_EQ(find(window_->capture(), red).count, 0) << "honey is not red";
+}
+
+TEST_F(WindowModes, SavesWhatIsOnTheScreen) {
+  controls().source().edit([](Scene& scene) { scene.materials[0].parameters["youngs_modulus"] = 54321; });
+  drag(*window_, GLFW_MOUSE_BUTTON_LEFT, 80, 30);
+  press(*window_, GLFW_KEY_S);
+  window_->draw();
+  ASSERT_TRUE(has("save"));
+  // The field is selected, so that the first letter takes the place of what it held.
+  const std::string path = (folder_.path() / "mine.toml").string();
+  window_->draw();
+  for (const char c : path) window_->on_character(static_cast<unsigned char>(c));
+  window_->draw();
+  click(*window_, "save");
+  window_->draw();
+  ASSERT_TRUE(std::filesystem::exists(path)) << window_->notes().message;
+  const Scene saved = load_scene(path);
+  EXPECT_EQ(saved.materials[0].parameters.at("youngs_modulus"), 54321);
+  EXPECT_EQ(resolved_toml(saved), resolved_toml(scene_to_save(controls().scene(), controls().look(), path)));
+  const Image here = window_->capture();
+  open(saved);
+  EXPECT_LT(difference(here, window_->capture()), 0.12) << "the same picture, but for the message";
+}
+
+TEST_F(WindowModes, AClickPicksAParticleAndTellsItsNumbers) {
+  press(*window_, GLFW_KEY_TAB);
+  // The ball is in the middle of the picture, its left side beside the panels.
+  click(*window_, 285, 245);
+  ASSERT_EQ(controls().picked().kind, Picked::Kind::particle);
+  window_->draw();
+  window_->draw();
+  EXPECT_TRUE(has("picked speed"));
+  EXPECT_TRUE(has("picked particles in it"));
+  EXPECT_TRUE(has("picked pressure"));
+  const Image& shown = picture("mode_picked");
+  // A white ring around it.
+  const auto at = controls().camera().seen(controls().snapshot()->position(*controls().picked_particle()),
+                                           static_cast<double>(kWidth) / kHeight);
+  const int x = static_cast<int>((1 + (*at)[0]) / 2 * kWidth), y = static_cast<int>((1 - (*at)[1]) / 2 * kHeight);
+  EXPECT_GT(shown.pixel(x, y - 9)[1], 200);
+  const auto id = controls().picked().id;
+  step_to(3);
+  EXPECT_EQ(controls().picked().id, id) << "it is followed";
+  EXPECT_TRUE(controls().picked_particle().has_value());
+}
+
+TEST_F(WindowModes, PlotsShowTheEnergies) {
+  step_to(4);
+  press(*window_, GLFW_KEY_TAB);
+  click(*window_, "tab Plots");
+  window_->draw();
+  for (const PlottedNumber& plot : plotted_numbers()) EXPECT_TRUE(has(std::string("plot ") + plot.name)) << plot.name;
+  EXPECT_EQ(window_->panel().numbers.size(), 4U);
+  picture("mode_plots");
+}
+
+TEST_F(WindowModes, TheMousePullsMaterial) {
+  Scene scene = scene_;
+  scene.gravity = {};
+  scene.bodies[0].velocity[1] = {};
+  open(scene);
+  controls().hand_radius = 0.9;
+  const Found before = find(window_->capture(), red);
+  window_->on_cursor(320, 240);
+  window_->draw();
+  window_->on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_PRESS, GLFW_MOD_CONTROL);
+  window_->draw();
+  ASSERT_TRUE(controls().grabbed().has_value());
+  window_->on_cursor(400, 240);
+  window_->draw();
+  picture("mode_grab");
+  step_to(4);
+  window_->on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_RELEASE, 0);
+  window_->draw();
+  EXPECT_FALSE(controls().grabbed().has_value());
+  rest(*window_);
+  const Found after = find(window_->capture(), red);
+  EXPECT_NEAR(after.x - before.x, 80, 30);
+  EXPECT_NEAR(after.y, before.y, 12);
+  EXPECT_EQ(controls().scene().fields.size(), 3U) << "one for each frame that was pulled";
+}
+
+TEST_F(WindowModes, DropsABodyAndPlacesACollider) {
+  controls().drop_preset = "water";
+  controls().hand_radius = 0.2;
+  window_->on_cursor(500, 200);
+  press(*window_, GLFW_KEY_B);
+  ASSERT_TRUE(reaches(*window_, [](const SourceStatus& s) { return s.frame.particles > 4100 && !s.busy; }));
+  window_->on_cursor(500, 330);
+  press(*window_, GLFW_KEY_O);
+  ASSERT_TRUE(reaches(
+      *window_, [this](const SourceStatus& s) { return !s.busy && player_->running_scene()->colliders.size() == 2; }));
+  rest(*window_);
+  picture("mode_dropped");
+  EXPECT_EQ(controls().scene().emitters.size(), 1U);
+  EXPECT_EQ(controls().status().note, "");
+  step_to(3);
+  window_->on_cursor(40, 400);
+  window_->draw();
+  window_->on_cursor(500, 330);
+  controls().pick_at({2 * 500.5 / kWidth - 1, 1 - 2 * 330.5 / kHeight, static_cast<double>(kWidth) / kHeight});
+  EXPECT_EQ(controls().picked().kind, Picked::Kind::collider);
+  EXPECT_EQ(controls().picked().collider, 1);
+}
+
+TEST_F(WindowModes, WritesPicturesAndFilmsOfWhatIsSeen) {
+  press(*window_, GLFW_KEY_I);
+  window_->draw();
+  const auto png = read_png(folder_ / "record_001.png");
+  ASSERT_TRUE(png.has_value()) << window_->notes().message;
+  EXPECT_EQ(png->width, kWidth);
+  EXPECT_LT(difference(*png, window_->capture()), 0.12) << "but for the message";
+  if (!program_exists("ffmpeg")) GTEST_SKIP() << "NOTICE: ffmpeg is not installed; films are not tested";
+  press(*window_, GLFW_KEY_V);
+  window_->draw();
+  EXPECT_TRUE(window_->notes().recording);
+  step_to(4);
+  EXPECT_EQ(window_->notes().pictures, 3);
+  press(*window_, GLFW_KEY_V);
+  window_->draw();
+  EXPECT_FALSE(window_->notes().recording);
+  EXPECT_GT(std::filesystem::file_size(folder_ / "record_001.mp4"), 1000U);
+  press(*window_, GLFW_KEY_V);
+  window_->draw();
+  press(*window_, GLFW_KEY_V);
+  window_->draw();
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "record_002.mp4")) << "a film without a picture leaves nothing";
+}
+
+TEST_F(WindowModes, KeysAreListedAndPanelsHidden) {
+  press(*window_, GLFW_KEY_SLASH, GLFW_MOD_SHIFT);
+  window_->draw();
+  EXPECT_TRUE(has("help space"));
+  picture("mode_help");
+  press(*window_, GLFW_KEY_ESCAPE);
+  EXPECT_FALSE(has("help space"));
+  EXPECT_TRUE(window_->has_scene());
+  press(*window_, GLFW_KEY_H);
+  window_->draw();
+  EXPECT_FALSE(has("play"));
+  const Image bare = window_->capture();
+  press(*window_, GLFW_KEY_H);
+  window_->draw();
+  EXPECT_TRUE(has("play"));
+  const Image full = window_->capture();
+  EXPECT_NE(bare.pixel(30, 60)[0], full.pixel(30, 60)[0]);
+}
+
+TEST_F(WindowModes, RunsToTheFrameThatIsTyped) {
+  window_->panel().run_to = 3;
+  click(*window_, "run to");
+  ASSERT_TRUE(
+      reaches(*window_, [](const SourceStatus& s) { return s.frame.frame == 3 && s.state == PlayState::paused; }));
+  click(*window_, "time line", 0.02);
+  EXPECT_EQ(controls().source().status().frame.frame, 1);
+  click(*window_, "time line", 0.98);
+  EXPECT_EQ(controls().source().status().frame.frame, 3);
+}
+
+TEST_F(WindowModes, TheStartPageOpensASceneByDoubleClick) {
+  window_.reset();
+  player_.reset();
+  ViewerWindow::Options options = options_of_window_;
+  options.gallery = list_gallery(FIRN_SOURCE_DIR);
+  std::filesystem::path opened;
+  options.open = [&](const std::filesystem::path& path) -> Show {
+    opened = path;
+    if (path.stem() == "concrete") throw Error(ErrorKind::usage, "no concrete today");
+    return {scene_, std::make_unique<SimulationPlayer>(scene_), "test"};
+  };
+  options.double_click = 60;
+  window_ = std::make_unique<ViewerWindow>(options);
+  EXPECT_FALSE(window_->has_scene());
+  for (int i = 0; i < 15; ++i) window_->draw();
+  const Image page = picture("start_page");
+  // Colourful thumbnails.
+  int colourful = 0;
+  for (std::size_t i = 0; i < page.rgb.size(); i += 3) {
+    const auto [low, high] = std::minmax({page.rgb[i], page.rgb[i + 1], page.rgb[i + 2]});
+    colourful += high > low + 40 ? 1 : 0;
+  }
+  EXPECT_GT(colourful, 8000);
+  click(*window_, "clay");
+  EXPECT_FALSE(window_->has_scene()) << "one click chooses";
+  const auto twice = [&](const std::string& item) {
+    // Elsewhere first, so that no click before is the first one of the two.
+    click(*window_, 5, 5);
+    click(*window_, item);
+    click(*window_, item);
+  };
+  twice("concrete");
+  EXPECT_FALSE(window_->has_scene()) << "what is wrong is told on the page";
+  EXPECT_EQ(opened.stem(), "concrete");
+  twice("clay");
+  EXPECT_EQ(opened.stem(), "clay");
+  ASSERT_TRUE(window_->has_scene());
+  ASSERT_TRUE(paused_at(*window_, 1));
+  EXPECT_GT(find(window_->capture(), red).count, 1000);
+  press(*window_, GLFW_KEY_ESCAPE);
+  window_->draw();
+  EXPECT_FALSE(window_->has_scene()) << "and back";
+  window_->draw();
+  EXPECT_TRUE(has("clay"));
+}
+
+}  // namespace
+}  // namespace firn
