@@ -59,7 +59,7 @@ void GridSampler<Real, dim>::add(const Particles<Real, dim>& particles) {
     const std::size_t first = particles.first_of_block(b);
     for (std::size_t p = first; p < first + particles.block_size(b); ++p) {
       const Index<dim> cell = cell_of_key<dim>(particles.cell(p));
-      const double mass = static_cast<double>(particles.real(Field::mass)[p]);
+      const double mass = particles.mass(p);
       for (int s = 0; s < stencil; ++s) {
         Index<dim> node;
         Vec<double, dim> distance;  // from the particle to the node, cells

@@ -225,28 +225,13 @@ class SimulationOf final : public Simulation {
 
   Totals totals() const override {
     Totals sum;
-    arena_.execute([&] {
-      for (const auto& material : world_->materials) {
-        sum += measure_totals<Real, dim>(
-            material.particles, material.model, material.parameters,
-            {world_->grid.dx(), world_->transfer.kernel, world_->transfer.affine, world_->gravity});
-      }
-    });
+    arena_.execute([&] { sum = totals_of(*world_); });
     return sum;
   }
 
   std::vector<ProbeValue> probe(std::span<const Vec3d> points) const override {
-    std::vector<Vec<double, dim>> places(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) std::copy_n(points[i].e, dim, places[i].e);
-    std::vector<ProbeSums> sums(points.size());
-    arena_.execute([&] {
-      for (const auto& material : world_->materials) {
-        add_to_probes<Real, dim>(places, material.particles, material.model, material.parameters, world_->grid.dx(),
-                                 world_->transfer.kernel, world_->grid.period(), sums);
-      }
-    });
     std::vector<ProbeValue> values;
-    for (const ProbeSums& sum : sums) values.push_back(probe_value(sum, world_->grid.dx(), dim));
+    arena_.execute([&] { values = probe_values(*world_, points); });
     return values;
   }
 
@@ -393,24 +378,10 @@ class SimulationOf final : public Simulation {
     return step;
   }
 
-  /// Of the scene's colliders, behind which the world has its pins.
   /// @param duration how long the loads have been counted, s; 0 for not at all
   std::vector<ColliderReport> collider_reports(double duration) const {
-    const auto solids = std::span<const Collider<dim>>(world_->colliders).first(scene_.colliders.size());
-    std::vector<ColliderReport> reports(solids.size());
-    for (std::size_t k = 0; k < reports.size() && duration > 0; ++k) {
-      const ColliderLoad& load = world_->collider_loads[k];
-      reports[k].force = (1 / duration) * load.impulse;
-      reports[k].torque = (1 / duration) * load.angular_impulse;
-      reports[k].caught = load.caught;
-    }
-    arena_.execute([&] {
-      for (const auto& material : world_->materials) {
-        const auto inside = measure_penetration<Real, dim>(material.particles, world_->grid.dx(),
-                                                           world_->transfer.kernel, solids, world_->t);
-        for (std::size_t k = 0; k < reports.size(); ++k) reports[k].inside += inside[k];
-      }
-    });
+    std::vector<ColliderReport> reports;
+    arena_.execute([&] { reports = reports_of_colliders(*world_, scene_.colliders.size(), duration); });
     return reports;
   }
 

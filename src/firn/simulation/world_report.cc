@@ -1,4 +1,5 @@
 #include <firn/measure/output_columns.h>
+#include <firn/measure/penetration.h>
 #include <firn/scene/vary_parameters.h>
 #include <firn/simulation/world_report.h>
 #include <fmt/format.h>
@@ -50,9 +51,55 @@ std::string failure_text(const World<Real, dim>& world, const ParticleFailure& f
       fmt::join(failure.strain, ", "), determinant(F), material.name);
 }
 
-#define FIRN_INSTANTIATE(Real, dim)                                                                  \
-  template Snapshot snapshot_of<Real, dim>(const World<Real, dim>&, const Scene&, const WorldPlan&); \
-  template std::string failure_text<Real, dim>(const World<Real, dim>&, const ParticleFailure&, double);
+template <class Real, int dim>
+Totals totals_of(const World<Real, dim>& world) {
+  Totals sum;
+  for (const auto& material : world.materials) {
+    sum += measure_totals<Real, dim>(material.particles, material.model, material.parameters,
+                                     {world.grid.dx(), world.transfer.kernel, world.transfer.affine, world.gravity});
+  }
+  return sum;
+}
+
+template <class Real, int dim>
+std::vector<ProbeValue> probe_values(const World<Real, dim>& world, std::span<const Vec3d> points) {
+  std::vector<Vec<double, dim>> places(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) std::copy_n(points[i].e, dim, places[i].e);
+  std::vector<ProbeSums> sums(points.size());
+  for (const auto& material : world.materials) {
+    add_to_probes<Real, dim>(places, material.particles, material.model, material.parameters, world.grid.dx(),
+                             world.transfer.kernel, world.grid.period(), sums);
+  }
+  std::vector<ProbeValue> values;
+  for (const ProbeSums& sum : sums) values.push_back(probe_value(sum, world.grid.dx(), dim));
+  return values;
+}
+
+template <class Real, int dim>
+std::vector<ColliderReport> reports_of_colliders(const World<Real, dim>& world, std::size_t colliders,
+                                                 double duration) {
+  const auto solids = std::span<const Collider<dim>>(world.colliders).first(colliders);
+  std::vector<ColliderReport> reports(solids.size());
+  for (std::size_t k = 0; k < reports.size() && duration > 0; ++k) {
+    const ColliderLoad& load = world.collider_loads[k];
+    reports[k].force = (1 / duration) * load.impulse;
+    reports[k].torque = (1 / duration) * load.angular_impulse;
+    reports[k].caught = load.caught;
+  }
+  for (const auto& material : world.materials) {
+    const auto inside =
+        measure_penetration<Real, dim>(material.particles, world.grid.dx(), world.transfer.kernel, solids, world.t);
+    for (std::size_t k = 0; k < reports.size(); ++k) reports[k].inside += inside[k];
+  }
+  return reports;
+}
+
+#define FIRN_INSTANTIATE(Real, dim)                                                                          \
+  template Snapshot snapshot_of<Real, dim>(const World<Real, dim>&, const Scene&, const WorldPlan&);         \
+  template std::string failure_text<Real, dim>(const World<Real, dim>&, const ParticleFailure&, double);     \
+  template Totals totals_of<Real, dim>(const World<Real, dim>&);                                             \
+  template std::vector<ProbeValue> probe_values<Real, dim>(const World<Real, dim>&, std::span<const Vec3d>); \
+  template std::vector<ColliderReport> reports_of_colliders<Real, dim>(const World<Real, dim>&, std::size_t, double);
 FIRN_INSTANTIATE(float, 2)
 FIRN_INSTANTIATE(float, 3)
 FIRN_INSTANTIATE(double, 2)
