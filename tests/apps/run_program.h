@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <regex>
 #include <sstream>
@@ -17,6 +18,11 @@ struct ProgramResult {
   int exit_code = -1;
   std::string output, errors;  ///< stdout, stderr
 };
+
+/// A path as one word of a shell's command line.
+inline std::string quoted(const std::filesystem::path& path) {
+  return std::string(1, '\'').append(path.string()).append(1, '\'');
+}
 
 /// Runs `firn` with arguments as typed into a shell.
 inline ProgramResult run_firn(const std::string& arguments, const std::string& environment = "") {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/run_program.h"
+#include "support/temporary_folder.h"
 
 namespace firn::test {
 namespace {
@@ -20,12 +21,7 @@ namespace fs = std::filesystem;
 /// checkpoints at each.
 class ResumeRun : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::path(testing::TempDir()) / "firn resume XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-    write(scene_text());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { write(scene_text()); }
 
   static std::string scene_text() {
     return "dimension = 2\nend_time = 0.06\nframe_rate = 100\n"
@@ -41,18 +37,13 @@ class ResumeRun : public testing::Test {
   }
   void write(const std::string& text) const { std::ofstream(folder_ / "scene.toml") << text; }
   fs::path out(const std::string& name = "out") const { return folder_ / name; }
-  static std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
   ProgramResult run(const std::string& name = "out", const std::string& options = "") const {
     return run_firn("run " + quoted(folder_ / "scene.toml") + " -o " + quoted(out(name)) + " " + options);
   }
   ProgramResult resume(const std::string& options = "", const std::string& name = "out") const {
     return run_firn("resume " + quoted(out(name)) + " " + options);
   }
-  static std::string bytes(const fs::path& path) {
-    std::ostringstream text;
-    text << std::ifstream(path, std::ios::binary).rdbuf();
-    return text.str();
-  }
+  static std::string bytes(const fs::path& path) { return file_bytes(path); }
   static std::string frame_name(int frame) { return "particles/particles.000" + std::to_string(frame) + ".hdf"; }
 
   static std::vector<std::string> fields(const std::string& line) {
@@ -122,7 +113,8 @@ class ResumeRun : public testing::Test {
     ASSERT_TRUE(is_listed());
   }
 
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 TEST_F(ResumeRun, AStoppedRunGoesOnToTheSameFilesOnAnyNumberOfThreads) {

@@ -31,9 +31,7 @@ class RunScene : public testing::Test {
   }
 
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
-  static std::string quoted(const fs::path& path) { return std::string(1, '\'').append(path.string()).append(1, '\''); }
-  std::string quoted(const std::string& name) const { return quoted(folder_ / name); }
-  std::string quoted(const char* name) const { return quoted(folder_ / name); }
+  std::string quoted(const fs::path& name) const { return test::quoted(folder_ / name); }
   fs::path out(const std::string& name = "") const { return folder_ / "out" / name; }
   ProgramResult run(const std::string& options = "", const std::string& environment = "") const {
     return run_firn("run " + quoted("scene.toml") + " -o " + quoted("out") + " " + options, environment);

@@ -32,12 +32,6 @@ std::string frame_name(int frame) { return "particles/particles.000" + std::to_s
 
 }  // namespace
 
-std::string bytes_of(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 double Numbers::next() {
   state_ += 0x9e3779b97f4a7c15u;
   std::uint64_t z = state_;
@@ -47,20 +41,16 @@ double Numbers::next() {
 }
 
 void FaultRun::SetUp() {
-  std::string pattern = (fs::path(testing::TempDir()) / "firn faults XXXXXX").string();
-  folder_ = mkdtemp(pattern.data());
   std::ofstream(folder_ / "scene.toml") << kScene;
   const auto begin = std::chrono::steady_clock::now();
   const Ended ended = firn(run_arguments());
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   ASSERT_EQ(ended.exit_code, 0) << ended.errors;
-  for (int frame = 1; frame <= kFrames; ++frame) good_[frame_name(frame)] = bytes_of(out() / frame_name(frame));
-  for (const char* name : {kSeries, kProbe}) good_[name] = bytes_of(out() / name);
+  for (int frame = 1; frame <= kFrames; ++frame) good_[frame_name(frame)] = file_bytes(out() / frame_name(frame));
+  for (const char* name : {kSeries, kProbe}) good_[name] = file_bytes(out() / name);
   for (const auto& [name, bytes] : good_) ASSERT_FALSE(bytes.empty()) << name;
   clear();
 }
-
-void FaultRun::TearDown() { fs::remove_all(folder_); }
 
 std::vector<std::string> FaultRun::run_arguments(bool force) const {
   std::vector<std::string> arguments = {"run", (folder_ / "scene.toml").string(), "-o", out().string(), "--threads",
@@ -87,8 +77,8 @@ pid_t FaultRun::start(const std::vector<std::string>& arguments, const std::map<
 Ended FaultRun::wait(pid_t child) const {
   int status = 0;
   waitpid(child, &status, 0);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status), bytes_of(folder_ / "stdout"),
-          bytes_of(folder_ / "stderr")};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status), file_bytes(folder_ / "stdout"),
+          file_bytes(folder_ / "stderr")};
 }
 
 Ended FaultRun::firn(const std::vector<std::string>& arguments, const std::map<std::string, std::string>& environment,
@@ -113,7 +103,7 @@ void FaultRun::expect_good_frames(const std::string& where) const {
   for (int frame = 1; frame <= kFrames; ++frame) {
     const std::string name = frame_name(frame);
     if (!fs::exists(out() / name)) continue;
-    EXPECT_TRUE(bytes_of(out() / name) == good_.at(name)) << name << ": " << where;
+    EXPECT_TRUE(file_bytes(out() / name) == good_.at(name)) << name << ": " << where;
   }
 }
 
@@ -128,7 +118,7 @@ void FaultRun::expect_recovery(const std::string& where) const {
     ended = firn(run_arguments(true));
   }
   EXPECT_EQ(ended.exit_code, 0) << where << ": " << ended.errors;
-  for (const auto& [name, bytes] : good_) EXPECT_TRUE(bytes_of(out() / name) == bytes) << name << ": " << where;
+  for (const auto& [name, bytes] : good_) EXPECT_TRUE(file_bytes(out() / name) == bytes) << name << ": " << where;
 }
 
 void FaultRun::expect_clear_end(const Ended& ended, const std::string& where) const {

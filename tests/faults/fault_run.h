@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "support/temporary_folder.h"
+
 namespace firn::test {
 
 #ifdef FIRN_FAULTS_LONG
@@ -39,7 +41,6 @@ class FaultRun : public testing::Test {
   static constexpr int kFrames = 4;
 
   void SetUp() override;
-  void TearDown() override;
 
   std::filesystem::path out() const { return folder_ / "out"; }
   std::vector<std::string> run_arguments(bool force = false) const;
@@ -63,12 +64,11 @@ class FaultRun : public testing::Test {
   void expect_clear_end(const Ended& ended, const std::string& where) const;
   void clear() const { std::filesystem::remove_all(out()); }
 
-  std::filesystem::path folder_;
+  const TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
   std::map<std::string, std::string> good_;  ///< bytes of the frames and of the series
   double seconds_ = 0;                       ///< that the run takes
 };
-
-std::string bytes_of(const std::filesystem::path& path);
 
 /// Numbers that are the same in each run of the test.
 class Numbers {

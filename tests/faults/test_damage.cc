@@ -21,7 +21,7 @@ TEST_F(Damage, OfTheListOfCheckpointsIsRefusedOrHarmless) {
   ASSERT_EQ(firn(run_arguments()).exit_code, 0);
   const fs::path whole = folder_ / "whole";
   fs::copy(out(), whole, fs::copy_options::recursive);
-  const std::string good = bytes_of(whole / "run.json");
+  const std::string good = file_bytes(whole / "run.json");
   int refused = 0;
   const std::size_t stride = kThorough ? 3 : good.size() / 12;
   const auto check = [&](const std::string& damaged, const std::string& where) {
@@ -51,7 +51,7 @@ TEST_F(Damage, OfTheNewestCheckpointTakesTheOneBefore) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(whole / "checkpoints")) files.push_back(entry.path());
   const fs::path newest = *std::max_element(files.begin(), files.end());
-  const std::string good = bytes_of(newest);
+  const std::string good = file_bytes(newest);
   const std::size_t stride = kThorough ? good.size() / 60 : good.size() / 6;
   for (std::size_t i = 0; i < good.size(); i += stride) {
     clear();
@@ -81,7 +81,7 @@ TEST_F(Damage, ControlATornFrameIsNoticed) {
 TEST(DamagedFrame, EveryFlippedByteAndEveryTruncationIsRefused) {
   const fs::path path = fs::path(testing::TempDir()) / ("firn frame " + std::to_string(::getpid()));
   write_frame(path, sample_snapshot(4), sample_metadata());
-  const std::string good = bytes_of(path);
+  const std::string good = file_bytes(path);
   ASSERT_NO_THROW(read_frame(path));
   const auto is_refused = [&](const std::string& bytes) {
     std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
