@@ -160,10 +160,10 @@ TEST_F(BadFolder, PipesAndDevicesAreNoFolders) {  // row 43
 
 TEST_F(BadFolder, ScenesAndPointsGoThroughPipes) {  // row 43
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
-  EXPECT_EQ(firn("check pipe", "cat scene.toml > pipe & ").errors, "");
+  EXPECT_EQ(firn("check pipe", "{ timeout 20 cat scene.toml > pipe & }; ").errors, "");
   write("cube.obj", kCorners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
   ASSERT_EQ(firn("sample cube.obj --count 1000 -o file.ply").exit_code, 0);
-  ASSERT_EQ(firn("sample cube.obj --count 1000 -o pipe", "cat pipe > piped.ply & ").exit_code, 0);
+  ASSERT_EQ(firn("sample cube.obj --count 1000 -o pipe", "{ timeout 20 cat pipe > piped.ply & }; ").exit_code, 0);
   for (int i = 0; i < 100 && bytes("piped.ply").size() < bytes("file.ply").size(); ++i) ::usleep(10'000);
   EXPECT_TRUE(bytes("piped.ply") == bytes("file.ply"));
 }
