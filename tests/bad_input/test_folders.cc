@@ -108,7 +108,6 @@ TEST_P(OddName, GoesThroughTheWholeProgram) {  // row 42
   EXPECT_EQ(stats("frame", "out/" + name).size(), 4u);
   ended_well(firn("render " + folder + " --frame 4"));
   EXPECT_TRUE(exists("out/" + name + "/images/image.0004.png"));
-  ended_well(firn("check " + folder + "/scene.resolved.toml"));
   const ProgramResult missing = firn("resume " + quoted("out/no " + name));
   EXPECT_EQ(missing.exit_code, 3);
   EXPECT_TRUE(matches(missing.errors, "firn: out/no .* is not the output folder of a run: there is no such folder\n"));
@@ -117,9 +116,8 @@ TEST_P(OddName, GoesThroughTheWholeProgram) {  // row 42
 const std::string kLong = std::string(200, 'l') + "/" + std::string(200, 'm') + "/" + std::string(200, 'n');
 
 INSTANTIATE_TEST_SUITE_P(Each, OddName,
-                         testing::Values("with space", "quo'te", "double\"quote", "back\\slash", "ümlaut", "雪山",
-                                         "🏔️", "new\nline", "tab\there", "trailing/", "./a/../b", "#[x]=$y",
-                                         kLong.c_str()));
+                         testing::Values("with space", "quo'te \"and\" back\\slash", "ümlaut 雪山 🏔️",
+                                         "new\nline\tand tab", "#[x]=$y", "trailing/", "./a/../b", kLong.c_str()));
 
 TEST_F(BadFolder, NamesThatAreNotUtf8) {  // row 42
   expect_refused(firn("run scene.toml -o 'o\xff'"), 2,
