@@ -108,7 +108,6 @@ TEST_P(OddName, GoesThroughTheWholeProgram) {  // row 42
   EXPECT_EQ(stats("frame", "out/" + name).size(), 4u);
   ended_well(firn("render " + folder + " --frame 4"));
   EXPECT_TRUE(exists("out/" + name + "/images/image.0004.png"));
-  ended_well(firn("check " + folder + "/scene.resolved.toml"));
   const ProgramResult missing = firn("resume " + quoted("out/no " + name));
   EXPECT_EQ(missing.exit_code, 3);
   EXPECT_TRUE(matches(missing.errors, "firn: out/no .* is not the output folder of a run: there is no such folder\n"));
@@ -117,9 +116,8 @@ TEST_P(OddName, GoesThroughTheWholeProgram) {  // row 42
 const std::string kLong = std::string(200, 'l') + "/" + std::string(200, 'm') + "/" + std::string(200, 'n');
 
 INSTANTIATE_TEST_SUITE_P(Each, OddName,
-                         testing::Values("with space", "quo'te", "double\"quote", "back\\slash", "ümlaut", "雪山",
-                                         "🏔️", "new\nline", "tab\there", "trailing/", "./a/../b", "#[x]=$y",
-                                         kLong.c_str()));
+                         testing::Values("with space", "quo'te \"and\" back\\slash", "ümlaut 雪山 🏔️",
+                                         "new\nline\tand tab", "#[x]=$y", "trailing/", "./a/../b", kLong.c_str()));
 
 TEST_F(BadFolder, NamesThatAreNotUtf8) {  // row 42
   expect_refused(firn("run scene.toml -o 'o\xff'"), 2,
@@ -160,10 +158,10 @@ TEST_F(BadFolder, PipesAndDevicesAreNoFolders) {  // row 43
 
 TEST_F(BadFolder, ScenesAndPointsGoThroughPipes) {  // row 43
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
-  EXPECT_EQ(firn("check pipe", "cat scene.toml > pipe & ").errors, "");
+  EXPECT_EQ(firn("check pipe", "{ timeout 20 cat scene.toml > pipe & }; ").errors, "");
   write("cube.obj", kCorners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
   ASSERT_EQ(firn("sample cube.obj --count 1000 -o file.ply").exit_code, 0);
-  ASSERT_EQ(firn("sample cube.obj --count 1000 -o pipe", "cat pipe > piped.ply & ").exit_code, 0);
+  ASSERT_EQ(firn("sample cube.obj --count 1000 -o pipe", "{ timeout 20 cat pipe > piped.ply & }; ").exit_code, 0);
   for (int i = 0; i < 100 && bytes("piped.ply").size() < bytes("file.ply").size(); ++i) ::usleep(10'000);
   EXPECT_TRUE(bytes("piped.ply") == bytes("file.ply"));
 }

@@ -121,7 +121,7 @@ TEST_F(BadMesh, MillimetresShowInCellsAndInTheCheck) {  // row 9
   expect_warned(firn("run scene.toml -o mm --set body.thing.units=mm --set 'resolution={cell_size=0.021}'"),
                 "body \"thing\": it is 0.95 cells wide (0.02 m, cells of 0.021 m) and gets 7 particles; did you mean "
                 "units = \"m\" instead of \"mm\"? Otherwise use smaller cells");
-  EXPECT_TRUE(matches(check().output, "[^]*body +thing: 500 particles, 8000 m.3, 20 m or 5.0 cells wide\n[^]*"));
+  EXPECT_TRUE(matches(check().output, "[^]*body +thing: 500 particles, 8000 m.3, 20 m or 4.0 cells wide\n[^]*"));
 }
 
 }  // namespace
