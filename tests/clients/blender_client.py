@@ -7,6 +7,7 @@ Runs as well in the Python module bpy.
 """
 
 import importlib.util
+import os
 import pathlib
 import shutil
 import subprocess
@@ -156,6 +157,23 @@ def check_calls_firn(checks, files, firn):
     checks.l_lies_right(places(surfaces), 1, "z", SURFACE_TOLERANCE, "surfaces made by the add-on")
     volumes = import_firn(run, kind="volume", firn=firn)
     checks.equal([thing.type for thing in volumes], ["VOLUME"], "a volume made by the add-on")
+
+
+def check_installs(checks, files, firn):
+    """As a user does it: install the file, tick it, set the path of firn, import. Only where nobody's settings change."""
+    if "BLENDER_USER_SCRIPTS" not in os.environ:
+        print("skipped: installing the add-on, because BLENDER_USER_SCRIPTS does not name a folder for it")
+        return
+    sys.modules.pop("import_firn").unregister()
+    checks.that(not hasattr(bpy.types, "IMPORT_SCENE_OT_firn_run"), "the add-on can be taken away")
+    bpy.ops.preferences.addon_install(filepath=str(ADDON), overwrite=True)
+    bpy.ops.preferences.addon_enable(module="import_firn")
+    settings = bpy.context.preferences.addons["import_firn"].preferences
+    settings.firn = str(firn)
+    run = files / "fresh"
+    shutil.rmtree(run / "export", ignore_errors=True)
+    empty_scene()
+    checks.l_lies_right(places(import_firn(run)), 1, "z", 0.002, "the installed add-on, by the firn of its preferences")
 
 
 def check_refusals(checks, files):
@@ -353,6 +371,7 @@ def main():
     check_refusals(checks, files)
     if len(arguments) > 2:
         check_calls_firn(checks, files, arguments[2])
+        check_installs(checks, files, arguments[2])
     check_meshes(checks, files)
     check_volumes(checks, files)
     check_saved_file(checks, files)

@@ -10,7 +10,7 @@ blender   the add-on, Blender's own importers, volumes and a picture by Cycles, 
 usd       the points of tools/usd/firn_to_usd.py, by the rules of usdchecker
 
 Without a CHECK all of them run, and a table tells the results. A check whose program is missing is skipped (exit code 77
-where it is the only one), unless --require is given. Pictures and logs are in the folder.
+where it is the only one), unless --require names it. Pictures are in the folder.
 """
 
 import argparse
@@ -121,7 +121,7 @@ def check_blender(options):
     blender = program("blender")
     arguments = [options.folder, options.folder / "blender.png", options.firn]
     return call([blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python", HERE / "blender_client.py", "--", *arguments],
-                env=system_environment())
+                env={**system_environment(), "BLENDER_USER_SCRIPTS": str(options.folder / "blender_scripts")})
 
 
 def check_usd(options):
@@ -144,7 +144,8 @@ def run_check(name, options):
         code = runners[name](options)
         return code, "passed" if code == 0 else f"FAILED ({code})"
     except Missing as missing:
-        return (1 if options.require else SKIPPED), f"{'FAILED' if options.require else 'skipped'}: {missing} is not installed"
+        needed = name in options.require
+        return (1 if needed else SKIPPED), f"{'FAILED' if needed else 'skipped'}: {missing} is not installed"
 
 
 def main():
@@ -153,11 +154,12 @@ def main():
     parser.add_argument("--firn", type=pathlib.Path, default=HERE.parents[1] / "build" / "firn", help="the program")
     parser.add_argument("--folder", type=pathlib.Path, default=HERE.parents[1] / "build" / "clients", help="for files and pictures")
     parser.add_argument("--usd-python", help="a Python that has usd-core")
-    parser.add_argument("--require", action="store_true", default=bool(os.environ.get("FIRN_REQUIRE_CLIENTS")),
-                        help="a missing program is a failure; also by FIRN_REQUIRE_CLIENTS=1")
+    parser.add_argument("--require", default=os.environ.get("FIRN_REQUIRE_CLIENTS", ""), metavar="'CHECK ...'",
+                        help="checks whose program must be there; also by FIRN_REQUIRE_CLIENTS")
     options = parser.parse_args()
     if unknown := set(options.checks) - set(CHECKS):
         parser.error(f"no check is called {', '.join(sorted(unknown))}; there are {', '.join(CHECKS)}")
+    options.require = options.require.split()
     options.firn, options.folder = options.firn.resolve(), options.folder.resolve()
     options.folder.mkdir(parents=True, exist_ok=True)
     results = []
