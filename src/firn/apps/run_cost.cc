@@ -17,7 +17,7 @@ constexpr double kFrameBytesPerParticle[2] = {50, 100};
 /// A year of computing at a thousand steps per second is 3e10.
 constexpr double kManySteps = 1e9;
 /// In cells: surfaces are only known so well where they are level sets, and bodies may touch colliders.
-constexpr double kTouch = 0.1;
+constexpr double kTouch = 0.25;
 
 double particles_at_end(const Scene& scene, const WorldPlan& plan) {
   auto particles = static_cast<double>(plan.particles);
