@@ -83,6 +83,7 @@ Contents read_contents(hid_t file, const Object& object) {
   Contents contents{Handle(is_dataset ? H5Dget_type(source) : H5Aget_type(source), H5Tclose, "get"), {}, {}};
   contents.size.resize(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
   H5Sget_simple_extent_dims(space, contents.size.data(), nullptr);
+  if (contents.count() > kMostWritten) return contents;
   contents.values.resize(contents.count() * H5Tget_size(contents.type));
   if (is_dataset) {
     H5Dread(source, contents.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, contents.values.data());

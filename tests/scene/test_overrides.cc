@@ -25,6 +25,8 @@ TEST(Overrides, FindBodiesByNameOrNumber) {
 
 TEST(Overrides, TheLastOneWins) { EXPECT_EQ(parse(kMinimal, {"seed=2", "seed=3"}).seed, 3u); }
 
+TEST(Overrides, LettersOfAnyLanguageNeedNoQuotes) { EXPECT_EQ(parse(kMinimal, {"title=Größe Й"}).title, "Größe Й"); }
+
 TEST(Overrides, TextNeedsNoQuotes) {
   const Scene scene = parse(kMinimal, {"method.transfer=pic", "output.folder=out/a b", "title=\"quoted\""});
   EXPECT_EQ(scene.method.transfer, MethodSettings::Transfer::pic);

@@ -79,6 +79,10 @@ void apply_overrides(Document& document, const std::vector<std::string>& overrid
 /// Refuses what would exhaust the parser's stack; `text` is not yet known to be TOML. Throws Error(usage), located.
 void check_text_limits(const std::string& name, const std::string& text);
 
+/// Refuses what is not ASCII outside of quotes and comments, which is no TOML and which the parser does not bear: in
+/// version 3.3.0 the behaviour is undefined for letters from U+00A1 to U+0499. Throws Error(usage), located.
+void check_bare_letters(const std::string& name, const std::string& text);
+
 /// parse_document without files or limits: for values on the command line. Locations count from the text's start.
 Node parse_toml(const std::string& name, const std::string& text);
 

@@ -14,6 +14,9 @@ class LimitScanner {
  public:
   LimitScanner(const std::string& name, const std::string& text) : name_(name), text_(text) {}
 
+  /// Fails at a character outside of quotes and comments that is not ASCII.
+  void refuse_bare_letters() { refuses_bare_letters_ = true; }
+
   void scan() {
     while (position_ < text_.size()) {
       const char c = text_[position_];
@@ -46,6 +49,7 @@ class LimitScanner {
           dots_ = 0;
           break;
         default:
+          if (refuses_bare_letters_ && static_cast<unsigned char>(c) >= 0x80) fail_at_letter();
           break;
       }
       advance();
@@ -55,6 +59,12 @@ class LimitScanner {
  private:
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(ErrorKind::usage, fmt::format("{}:{}:{}: {}", name_, line_, position_ - line_start_ + 1, what));
+  }
+
+  [[noreturn]] void fail_at_letter() const {
+    std::size_t end = position_ + 1;
+    while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xc0) == 0x80) ++end;
+    fail(fmt::format("not TOML: '{}' outside of quotes; text needs quotes", text_.substr(position_, end - position_)));
   }
 
   void deepen(int& depth) {
@@ -94,10 +104,20 @@ class LimitScanner {
   const std::string& text_;
   std::size_t position_ = 0, line_ = 1, line_start_ = 0;
   int brackets_ = 0, dots_ = 0;
+  bool refuses_bare_letters_ = false;
 };
 
 }  // namespace
 
 void check_text_limits(const std::string& name, const std::string& text) { LimitScanner(name, text).scan(); }
+
+void check_bare_letters(const std::string& name, const std::string& text) {
+  // A byte order mark is no letter.
+  const bool marked = text.starts_with("\xEF\xBB\xBF");
+  const std::string rest = marked ? text.substr(3) : std::string();
+  LimitScanner scanner(name, marked ? rest : text);
+  scanner.refuse_bare_letters();
+  scanner.scan();
+}
 
 }  // namespace firn

@@ -61,11 +61,14 @@ std::string_view trimmed(std::string_view text) {
 std::vector<std::string> key_parts(std::string_view key) {
   std::vector<std::string> parts;
   try {
+    check_bare_letters("", std::string(key));
     const toml::table parsed = toml::parse(std::string(key) + " = 0", std::string());
     for (const toml::table* at = &parsed; at && at->size() == 1; at = at->begin()->second.as_table()) {
       parts.emplace_back(at->begin()->first.str());
     }
   } catch (const toml::parse_error&) {
+    parts.clear();
+  } catch (const Error&) {
     parts.clear();
   }
   return parts;
@@ -139,6 +142,7 @@ std::string explained(const toml::parse_error& error, std::string_view text) {
 }  // namespace
 
 Node parse_toml(const std::string& name, const std::string& text) {
+  check_bare_letters(name, text);
   try {
     return convert(toml::parse(text, name));
   } catch (const toml::parse_error& error) {
