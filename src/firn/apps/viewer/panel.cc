@@ -50,7 +50,8 @@ void draw_time_line(ViewControls& controls, PanelState& state) {
 }
 
 void draw_run_to(ViewControls& controls, PanelState& state) {
-  const auto count = static_cast<int>(std::max<std::int64_t>(controls.status().frame_count, 1));
+  const auto count = static_cast<int>(controls.status().frame_count);
+  if (count < 1) return;
   if (state.run_to < 1) state.run_to = count;
   ImGui::SetNextItemWidth(70);
   ImGui::InputInt("##run to", &state.run_to, 0);
