@@ -1,4 +1,5 @@
 #include <firn/apps/commands.h>
+#include <firn/apps/disk_estimate.h>
 #include <firn/apps/machine.h>
 #include <firn/apps/progress.h>
 #include <firn/apps/scene_options.h>
@@ -27,8 +28,6 @@ constexpr std::int64_t kCalibrationParticles = 20000;
 constexpr int kCalibrationSteps = 5;
 /// Columns, grid, tiles, sort space and one copy to take a frame back, as measured: bytes per particle.
 constexpr double kBytesPerParticle[2] = {400, 700};
-/// Bytes that a frame file takes per particle, compressed.
-constexpr double kFrameBytesPerParticle[2] = {50, 100};
 
 Calibration calibrate(const Scene& scene, const WorldPlan& plan) {
   Scene small = scene;
@@ -55,8 +54,22 @@ Calibration calibrate(const Scene& scene, const WorldPlan& plan) {
   return calibration;
 }
 
+std::string size_text(double bytes) {
+  return bytes < 0x1p30 ? fmt::format("{:.1f} MiB", bytes / 0x1p20) : fmt::format("{:.2f} GiB", bytes / 0x1p30);
+}
+
+void print_disk(const Scene& scene, const DiskEstimate& disk) {
+  const auto free = static_cast<double>(free_space(scene.output.folder));
+  fmt::print("  disk        {} of {} free: {} for {} frames ({:.0f} bytes per particle)", size_text(disk.total()),
+             free > 0 ? size_text(free) : "?", size_text(disk.frames_bytes), disk.frames,
+             disk.frame_bytes_per_particle);
+  if (disk.pictures > 0) fmt::print(", {} for {} pictures", size_text(disk.pictures_bytes), disk.pictures);
+  fmt::print(", {} for {} checkpoints; the film comes on top\n",
+             size_text(static_cast<double>(disk.checkpoints) * disk.checkpoint_bytes), disk.checkpoints);
+}
+
 /// What a crash would cost, and what it takes that it costs no more.
-void print_checkpoints(const Scene& scene, const WorldPlan& plan) {
+void print_checkpoints(const Scene& scene, const DiskEstimate& disk) {
   const CheckpointSettings& settings = scene.checkpoint;
   const double minutes = settings.every_minutes;
   const std::string frames = settings.every_frames == 1 ? "1 frame" : fmt::format("{} frames", settings.every_frames);
@@ -69,8 +82,8 @@ void print_checkpoints(const Scene& scene, const WorldPlan& plan) {
     loss = frames;
   }
   const std::string kept = settings.keep > 0 ? fmt::format("the newest {}", settings.keep) : "all";
-  fmt::print("  checkpoint  {:.3f} GiB each, twice that in the middle of a frame; {} stay; a crash loses {} at most\n",
-             checkpoint_bytes(scene, plan) / 0x1p30, kept, loss);
+  fmt::print("  checkpoint  {} each, twice that in the middle of a frame; {} stay; a crash loses {} at most\n",
+             size_text(disk.checkpoint_bytes), kept, loss);
 }
 
 void check_scene(const SceneOptions& options) {
@@ -83,7 +96,6 @@ void check_scene(const SceneOptions& options) {
   // On the average over the run, as if nothing went down a sink.
   const double particles = static_cast<double>(plan.particles) + 0.5 * emitted;
   const double dt = calibration.dt_cells * plan.cell_size;
-  const double frames = std::floor(scene.end_time * scene.frame_rate) + 1;
   const double steps = std::ceil(scene.end_time / dt);
   // A checkpoint is gathered and then laid out as a file before it is written.
   const double memory = (particles + 0.5 * emitted) * kBytesPerParticle[precision] + 2 * checkpoint_bytes(scene, plan);
@@ -101,9 +113,9 @@ void check_scene(const SceneOptions& options) {
   fmt::print("  particles   {:.0f}{}\n", static_cast<double>(plan.particles) + emitted,
              emitted > 0 ? " at the end" : "");
   fmt::print("  memory      {:.2f} GiB of {:.1f} GiB\n", memory / 0x1p30, static_cast<double>(total_memory()) / 0x1p30);
-  fmt::print("  disk        {:.2f} GiB for {} frames\n",
-             frames * particles * kFrameBytesPerParticle[precision] / 0x1p30, frames);
-  print_checkpoints(scene, plan);
+  const DiskEstimate disk = estimate_disk(scene, plan);
+  print_disk(scene, disk);
+  print_checkpoints(scene, disk);
   fmt::print("  time step   {:.2g} s at the start, by {}\n", dt, calibration.limit);
   fmt::print("  steps       {:.0f} or more: faster or stiffer material takes shorter ones\n", steps);
   fmt::print("  time        {} or more, pictures not counted\n",
@@ -112,6 +124,13 @@ void check_scene(const SceneOptions& options) {
   if (memory > 0.9 * static_cast<double>(total_memory())) {
     log_warning(fmt::format("the scene needs about {:.1f} GiB of memory and the machine has {:.1f}; use larger cells",
                             memory / 0x1p30, static_cast<double>(total_memory()) / 0x1p30));
+  }
+  const auto free = static_cast<double>(free_space(scene.output.folder));
+  if (free > 0 && disk.peak() > free) {
+    log_warning(
+        fmt::format("the run needs about {} on the disk of {}, which has {} free; free some space, write fewer "
+                    "frames (frame_rate) or choose another folder with -o",
+                    size_text(disk.peak()), scene.output.folder, size_text(free)));
   }
 }
 
