@@ -361,7 +361,7 @@ TEST_F(ResumeRun, CheckSaysWhatACrashWouldCost) {
   const std::string scene = quoted(folder_ / "scene.toml");
   const auto line = [&](const std::string& options) { return run_firn("check " + scene + " " + options).output; };
   EXPECT_TRUE(matches(line("--set checkpoint.every_frames=0"),
-                      "[^]*checkpoint .* GiB each, .*a crash loses 5 min of computing at most\n[^]*"));
+                      "[^]*checkpoint .* [MG]iB each, .*a crash loses 5 min of computing at most\n[^]*"));
   EXPECT_TRUE(matches(line("--set checkpoint.every_frames=3 --set checkpoint.every_minutes=0"),
                       "[^]*a crash loses 3 frames at most\n[^]*"));
   EXPECT_TRUE(matches(line("--set checkpoint.every_frames=0 --set checkpoint.every_minutes=0"),

@@ -1,4 +1,5 @@
 #include <firn/apps/commands.h>
+#include <firn/apps/disk_estimate.h>
 #include <firn/apps/machine.h>
 #include <firn/apps/progress.h>
 #include <firn/apps/run_cost.h>
@@ -63,8 +64,22 @@ Calibration calibrate(const Scene& scene, const WorldPlan& plan) {
   return calibration;
 }
 
+std::string size_text(double bytes) {
+  return bytes < 0x1p30 ? fmt::format("{:.1f} MiB", bytes / 0x1p20) : fmt::format("{:.2f} GiB", bytes / 0x1p30);
+}
+
+void print_disk(const Scene& scene, const DiskEstimate& disk) {
+  const auto free = static_cast<double>(free_space(scene.output.folder));
+  fmt::print("  disk        {} of {} free: {} for {} frames ({:.0f} bytes per particle)", size_text(disk.total()),
+             free > 0 ? size_text(free) : "?", size_text(disk.frames_bytes), disk.frames,
+             disk.frame_bytes_per_particle);
+  if (disk.pictures > 0) fmt::print(", {} for {} pictures", size_text(disk.pictures_bytes), disk.pictures);
+  fmt::print(", {} for {} checkpoints; the film comes on top\n",
+             size_text(static_cast<double>(disk.checkpoints) * disk.checkpoint_bytes), disk.checkpoints);
+}
+
 /// What a crash would cost, and what it takes that it costs no more.
-void print_checkpoints(const Scene& scene, const WorldPlan& plan) {
+void print_checkpoints(const Scene& scene, const DiskEstimate& disk) {
   const CheckpointSettings& settings = scene.checkpoint;
   const double minutes = settings.every_minutes;
   const std::string frames = settings.every_frames == 1 ? "1 frame" : fmt::format("{} frames", settings.every_frames);
@@ -77,8 +92,8 @@ void print_checkpoints(const Scene& scene, const WorldPlan& plan) {
     loss = frames;
   }
   const std::string kept = settings.keep > 0 ? fmt::format("the newest {}", settings.keep) : "all";
-  fmt::print("  checkpoint  {:.3f} GiB each, twice that in the middle of a frame; {} stay; a crash loses {} at most\n",
-             checkpoint_bytes(scene, plan) / 0x1p30, kept, loss);
+  fmt::print("  checkpoint  {} each, twice that in the middle of a frame; {} stay; a crash loses {} at most\n",
+             size_text(disk.checkpoint_bytes), kept, loss);
 }
 
 /// Numbers that follow from the scene and show a wrong unit or axis at a glance.
@@ -106,7 +121,6 @@ void check_scene(const SceneOptions& options) {
   for (const EmitterSettings& emitter : scene.emitters) emitted += emitted_particles(scene, emitter, plan);
   // On the average over the run, as if nothing went down a sink.
   const double particles = static_cast<double>(plan.particles) + 0.5 * emitted;
-  const double frames = std::floor(scene.end_time * scene.frame_rate) + 1;
   const double steps = steps_needed(scene, calibration.outlook.dt);
   fmt::print("{} is fine\n", options.file);
   fmt::print("  cell size   {:.4g} m\n", plan.cell_size);
@@ -124,9 +138,9 @@ void check_scene(const SceneOptions& options) {
              emitted > 0 ? " at the end" : "");
   fmt::print("  memory      {:.2f} GiB of {:.1f} GiB\n", memory_needed(scene, plan) / 0x1p30,
              static_cast<double>(total_memory()) / 0x1p30);
-  fmt::print("  disk        {:.2f} GiB for {} frames, {:.0f} bytes per particle and frame\n",
-             disk_needed(scene, plan) / 0x1p30, frames, frame_bytes_per_particle(scene));
-  print_checkpoints(scene, plan);
+  const DiskEstimate disk = estimate_disk(scene, plan);
+  print_disk(scene, disk);
+  print_checkpoints(scene, disk);
   print_scales(scene, plan, calibration.outlook);
   fmt::print("  steps       {:.0f} or more: faster or stiffer material takes shorter ones\n", steps);
   fmt::print("  time        {} or more, pictures not counted\n",
@@ -135,7 +149,13 @@ void check_scene(const SceneOptions& options) {
   if (const std::string refusal = memory_refusal(scene, plan); !refusal.empty()) {
     log_warning(refusal + "; firn run refuses it without --oversize");
   }
-  warn_of_disk(scene, plan);
+  const auto free = static_cast<double>(free_space(scene.output.folder));
+  if (free > 0 && disk.peak() > free) {
+    log_warning(
+        fmt::format("the run needs about {} on the disk of {}, which has {} free; free some space, write fewer "
+                    "frames (frame_rate) or choose another folder with -o",
+                    size_text(disk.peak()), scene.output.folder, size_text(free)));
+  }
   warn_of_steps(scene, calibration.outlook);
 }
 

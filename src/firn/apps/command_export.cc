@@ -4,8 +4,8 @@
 #include <firn/apps/export_target.h>
 #include <firn/apps/export_usd.h>
 #include <firn/apps/particle_colors.h>
+#include <firn/apps/work_folder.h>
 #include <firn/core/error.h>
-#include <firn/core/log.h>
 #include <firn/io/atomic_file.h>
 #include <firn/io/frame_reader.h>
 #include <firn/io/frame_series.h>
@@ -14,40 +14,15 @@
 #include <firn/surface/fog.h>
 #include <firn/surface/vdb_writer.h>
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <functional>
 #include <memory>
 
 namespace firn {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder that goes with what is in it.
-class WorkFolder {
- public:
-  WorkFolder() {
-    std::string name = (fs::temp_directory_path() / "firn.XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw Error(ErrorKind::files, fmt::format("cannot create a folder in {}; let TMPDIR name another place",
-                                                fs::temp_directory_path().string()));
-    }
-    path_ = name;
-  }
-  ~WorkFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// The frame with the axis and the columns that are asked for.
 Snapshot prepared(const ListedFrame& frame, const FrameList& list, const ExportOptions& options, UpAxis up,

@@ -27,7 +27,10 @@ void write_series_description(const ExportTarget& target, const FrameList& list,
     json["files"].push_back(
         {{"name", target.file(frame).filename().string()}, {"frame", frame.number}, {"time", frame.time}});
   }
-  write_file_atomically(target.beside(".series.json"), json.dump(1) + "\n");
+  // One for each format, because they may have different axes, and one for those who do not care.
+  for (const std::string& ending : {"." + series.format + ".series.json", std::string(".series.json")}) {
+    write_file_atomically(target.beside(ending), json.dump(1) + "\n");
+  }
 }
 
 std::string next_clicks(Client client, const std::string& format, const ExportTarget& target, const FrameList& list) {

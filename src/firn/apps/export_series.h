@@ -19,8 +19,9 @@ struct ExportedSeries {
   std::vector<std::string> materials;
 };
 
-/// Writes "NAME.series.json" beside the files: what they are, and of each its frame and time. Scripts read it. Throws
-/// Error (files).
+/// Writes "NAME.FORMAT.series.json", and "NAME.series.json" of the newest export, beside the files: what they are, and
+/// of each its frame and time. Scripts read it.
+/// Throws Error (files).
 void write_series_description(const ExportTarget& target, const FrameList& list, const ExportedSeries& series);
 
 /// What to click in the client to see the files; "" without a client or for a pair that makes no sense.

@@ -9,13 +9,20 @@
 #include <firn/scene/resolved.h>
 #include <fmt/format.h>
 
+#include <chrono>
+#include <ctime>
 #include <map>
 #include <utility>
 
 namespace firn {
 namespace {
 
-constexpr std::size_t kMostWaiting = 2;
+/// Processor time of the calling thread, s.
+double thread_seconds() {
+  timespec time = {};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 FrameMetadata metadata_of(const Scene& scene) {
   FrameMetadata metadata;
@@ -164,7 +171,8 @@ FrameOutput::FrameOutput(const Scene& scene, const RunFolder& folder, const Fram
       folder_(folder),
       history_(history),
       files_(new Files{stats_of(scene_, folder, history), probes_of(scene_, folder, history), metadata_of(scene),
-                       frames_of(scene, folder, history)}) {
+                       frames_of(scene, folder, history)}),
+      written_(history.frames) {
   if (history.frames > 0) files_->write_series(folder);
   if (scene.render.film && scene.render.every_nth > 0) {
     if (program_exists("ffmpeg")) {
@@ -181,23 +189,41 @@ FrameOutput::~FrameOutput() {
   {
     const std::lock_guard lock(mutex_);
     closing_ = true;
-    queue_.clear();
+    next_.reset();
   }
   changed_.notify_all();
   if (thread_.joinable()) thread_.join();
 }
 
-void FrameOutput::submit(FinishedFrame frame) {
+void FrameOutput::wait_for_room() {
+  const auto start = std::chrono::steady_clock::now();
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return queue_.size() < kMostWaiting || failure_ != nullptr; });
+  // Pictures that a resumed run's film begins with hold no frame.
+  changed_.wait(lock, [&] { return (!next_ && !holds_frame_) || failure_ != nullptr; });
+  cost_.waiting += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (failure_ != nullptr) std::rethrow_exception(failure_);
-  queue_.push_back(std::move(frame));
+}
+
+void FrameOutput::submit(FinishedFrame frame) {
+  wait_for_room();
+  const std::lock_guard lock(mutex_);
+  next_ = std::move(frame);
   changed_.notify_all();
+}
+
+std::int64_t FrameOutput::written() const {
+  const std::lock_guard lock(mutex_);
+  return written_;
+}
+
+OutputCost FrameOutput::cost() const {
+  const std::lock_guard lock(mutex_);
+  return cost_;
 }
 
 void FrameOutput::wait() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return (queue_.empty() && !busy_) || failure_ != nullptr; });
+  changed_.wait(lock, [&] { return (!next_ && !busy_) || failure_ != nullptr; });
   if (failure_ != nullptr) std::rethrow_exception(failure_);
   files_->stats.sync();
   for (const ProbeTable& probe : files_->probes) probe.sync();
@@ -212,21 +238,21 @@ void FrameOutput::work() {
   // The film's pictures of earlier frames come first; until then `busy_` is set.
   bool is_history_drawn = false;
   while (true) {
-    FinishedFrame frame;
+    std::optional<FinishedFrame> frame;
     if (is_history_drawn) {
       std::unique_lock lock(mutex_);
-      changed_.wait(lock, [&] { return closing_ || !queue_.empty(); });
+      changed_.wait(lock, [&] { return closing_ || next_; });
       if (closing_) return;
-      frame = std::move(queue_.front());
-      queue_.pop_front();
-      busy_ = true;
-      changed_.notify_all();
+      frame = std::exchange(next_, std::nullopt);
+      busy_ = holds_frame_ = true;
     }
     std::exception_ptr failure;
     try {
       if (is_history_drawn) {
-        write(frame);
-        draw(frame);
+        const double start = thread_seconds();
+        write(*frame);
+        note_written(frame->report.frame, thread_seconds() - start);
+        draw(*frame);
       } else {
         draw_history();
         is_history_drawn = true;
@@ -234,12 +260,19 @@ void FrameOutput::work() {
     } catch (...) {
       failure = std::current_exception();
     }
+    frame.reset();
     const std::lock_guard lock(mutex_);
-    busy_ = false;
+    busy_ = holds_frame_ = false;
     if (failure != nullptr) failure_ = failure;
     changed_.notify_all();
     if (failure != nullptr) return;
   }
+}
+
+void FrameOutput::note_written(std::int64_t frame, double seconds) {
+  const std::lock_guard lock(mutex_);
+  written_ = frame;
+  cost_.writing += seconds;
 }
 
 void FrameOutput::write(const FinishedFrame& frame) {

@@ -8,7 +8,6 @@
 #include <firn/simulation/simulation.h>
 
 #include <condition_variable>
-#include <deque>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -35,8 +34,14 @@ struct FrameHistory {
 /// The rows of the scene's probes at the frame that the simulation stands at.
 std::vector<std::vector<ProbeRow>> probe_rows(const Simulation& simulation);
 
+/// What the output of frames took from the simulation.
+struct OutputCost {
+  double waiting = 0;  ///< s that the simulation stood still because the frame before was not written yet
+  double writing = 0;  ///< s of processor time of the writing thread, pictures not counted
+};
+
 /// Writes frames, the row of statistics, pictures and the film in a thread of its own, while the next frame is
-/// computed.
+/// computed. One frame at most is on its way.
 class FrameOutput {
  public:
   FrameOutput(const Scene& scene, const RunFolder& folder, const FrameHistory& history = {});
@@ -45,7 +50,11 @@ class FrameOutput {
   FrameOutput(const FrameOutput&) = delete;
   FrameOutput& operator=(const FrameOutput&) = delete;
 
-  /// Hands a frame over; waits while two are still unwritten. Throws what went wrong with an earlier one.
+  /// Waits until the frame before is on the disk. Before the next is copied, so that there is only one copy in memory.
+  /// Throws what went wrong with it.
+  void wait_for_room();
+
+  /// Hands a frame over. Throws what went wrong with an earlier one.
   void submit(FinishedFrame frame);
 
   /// Waits until every frame that was handed over is on the disk. Throws what went wrong.
@@ -56,9 +65,14 @@ class FrameOutput {
 
   bool has_film() const { return film_ != nullptr; }
 
+  /// The newest frame that is on the disk; that of the history at first.
+  std::int64_t written() const;
+  OutputCost cost() const;
+
  private:
   void work();
   void write(const FinishedFrame& frame);
+  void note_written(std::int64_t frame, double seconds);
   void draw(const FinishedFrame& frame);
   Image draw(const Snapshot& snapshot);
   void draw_history();
@@ -73,10 +87,12 @@ class FrameOutput {
   std::unique_ptr<Film> film_;
   std::optional<Camera> camera_;  // of the first picture, so that an automatic camera stands still
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<FinishedFrame> queue_;
-  bool busy_ = true, closing_ = false;
+  std::optional<FinishedFrame> next_;
+  bool busy_ = true, holds_frame_ = false, closing_ = false;
+  std::int64_t written_ = 0;
+  OutputCost cost_;
   std::exception_ptr failure_;
   std::thread thread_;
 };

@@ -87,7 +87,10 @@ Json checkpoint_info(const fs::path& file) {
   } catch (const Error&) {
     // Its meshes are elsewhere.
   }
-  info["next"] = {"firn resume FOLDER goes on from the newest checkpoint of a run, --from-frame N from an earlier one"};
+  const std::string run =
+      info["listed"].get<bool>() ? (file.parent_path() / "..").lexically_normal().string() : "FOLDER";
+  info["next"] = {
+      fmt::format("firn resume {} goes on from the newest checkpoint, --from-frame N from an earlier one", run)};
   return info;
 }
 

@@ -24,6 +24,10 @@ std::string text_of(const Json& info, const char* key) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
+std::string length_text(const Json& info, const char* key) {
+  return fmt::format("{:.5g} m", info.at(key).get<double>());
+}
+
 /// The keys that are there, as "key value", joined.
 std::string joined(const Json& info, std::initializer_list<const char*> keys) {
   std::string text;
@@ -90,8 +94,8 @@ std::string file_lines(const Json& info) {
                               (info.value("inside_frame", false) ? ", in the middle of the next" : ""));
   }
   text += line("particles", text_of(info, "particles"));
-  if (info.contains("particle_spacing")) text += line("spacing", text_of(info, "particle_spacing") + " m");
-  if (info.contains("cell_size")) text += line("cell size", text_of(info, "cell_size") + " m");
+  if (info.contains("particle_spacing")) text += line("spacing", length_text(info, "particle_spacing"));
+  if (info.contains("cell_size")) text += line("cell size", length_text(info, "cell_size"));
   text += materials_text(info.at("materials"));
   return text;
 }
@@ -150,7 +154,7 @@ std::string info_text(const Json& info) {
   const std::string method = joined(info, {"precision", "kernel", "transfer", "form", "up"});
   if (!method.empty()) text += line("method", method);
   if (content.contains("bytes")) text += line("size", size_text(content));
-  if (content.contains("columns")) text += line("columns", "") + columns_text(content["columns"]);
+  if (content.contains("columns")) text += "  columns\n" + columns_text(content["columns"]);
   if (info.contains("next")) {
     for (const Json& next : info["next"]) text += line("next", next.get<std::string>());
   }

@@ -1,3 +1,4 @@
+#include <firn/apps/disk_estimate.h>
 #include <firn/apps/machine.h>
 #include <firn/apps/run_cost.h>
 #include <firn/core/error.h>
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 namespace firn {
 namespace {
@@ -27,24 +27,22 @@ double particles_at_end(const Scene& scene, const WorldPlan& plan) {
 
 double gibibytes(double bytes) { return bytes / 0x1p30; }
 
+/// Bytes of disk for frames and checkpoints, at once; estimate_disk() measures.
+double disk_needed(const Scene& scene, const WorldPlan& plan) {
+  const double frames = std::floor(scene.end_time * scene.frame_rate) + 1;
+  // What an emitter makes is there for half of the frames on the average.
+  const double particles = 0.5 * (static_cast<double>(plan.particles) + particles_at_end(scene, plan));
+  const double kept = scene.checkpoint.keep > 0 ? scene.checkpoint.keep + 1 : 2;
+  return frames * particles * kFrameBytesPerParticle[scene.precision == Scene::Precision::single ? 0 : 1] +
+         kept * checkpoint_bytes(scene, plan);
+}
+
 }  // namespace
 
 double memory_needed(const Scene& scene, const WorldPlan& plan) {
   double bytes = 0;
   for (const MemoryUse& use : memory_estimate(scene, plan)) bytes += use.bytes;
   return bytes;
-}
-
-double frame_bytes_per_particle(const Scene& scene) {
-  return kFrameBytesPerParticle[scene.precision == Scene::Precision::single ? 0 : 1];
-}
-
-double disk_needed(const Scene& scene, const WorldPlan& plan) {
-  const double frames = std::floor(scene.end_time * scene.frame_rate) + 1;
-  // What an emitter makes is there for half of the frames on the average.
-  const double particles = 0.5 * (static_cast<double>(plan.particles) + particles_at_end(scene, plan));
-  const double kept = scene.checkpoint.keep > 0 ? scene.checkpoint.keep + 1 : 2;
-  return frames * particles * frame_bytes_per_particle(scene) + kept * checkpoint_bytes(scene, plan);
 }
 
 double steps_needed(const Scene& scene, double dt) {
@@ -73,16 +71,13 @@ void check_memory(const Scene& scene, const WorldPlan& plan, bool is_forced) {
 }
 
 void warn_of_disk(const Scene& scene, const WorldPlan& plan) {
-  std::error_code error;
-  std::filesystem::path place = std::filesystem::absolute(scene.output.folder, error);
-  while (!std::filesystem::exists(place, error) && place.has_relative_path()) place = place.parent_path();
-  const std::filesystem::space_info space = std::filesystem::space(place, error);
+  const auto free = static_cast<double>(free_space(scene.output.folder));
   const double needed = disk_needed(scene, plan);
-  if (error || needed <= static_cast<double>(space.available)) return;
+  if (free == 0 || needed <= free) return;
   log_warning(
-      fmt::format("the frames need about {:.2f} GiB, and {} has {:.2f} GiB left; free some space, choose another "
-                  "folder with -o, or write fewer frames (frame_rate)",
-                  gibibytes(needed), place.string(), gibibytes(static_cast<double>(space.available))));
+      fmt::format("the frames need about {:.2f} GiB, and the disk of {} has {:.2f} GiB left; free some space, choose "
+                  "another folder with -o, or write fewer frames (frame_rate)",
+                  gibibytes(needed), scene.output.folder, gibibytes(free)));
 }
 
 void warn_of_steps(const Scene& scene, const StepOutlook& outlook) {

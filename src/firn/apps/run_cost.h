@@ -10,12 +10,6 @@ namespace firn {
 /// Bytes of memory that the run needs, as far as can be told.
 double memory_needed(const Scene& scene, const WorldPlan& plan);
 
-/// Bytes of disk that its frames and checkpoints take.
-double disk_needed(const Scene& scene, const WorldPlan& plan);
-
-/// Bytes of one frame's file per particle, compressed.
-double frame_bytes_per_particle(const Scene& scene);
-
 /// Time steps of this length (s) in the whole run; at least one to a frame.
 double steps_needed(const Scene& scene, double dt);
 
@@ -25,7 +19,8 @@ std::string memory_refusal(const Scene& scene, const WorldPlan& plan);
 /// Error(resources) with memory_refusal(), if there is one; only a warning if `is_forced`.
 void check_memory(const Scene& scene, const WorldPlan& plan, bool is_forced);
 
-/// Warns if the output folder's disk has less space than the run needs. The folder need not exist.
+/// Warns if the output folder's disk has less space than the run is likely to need, by a rule of thumb that takes no
+/// time (estimate_disk() measures). The folder need not exist.
 void warn_of_disk(const Scene& scene, const WorldPlan& plan);
 
 /// Warns of a run of more steps than anybody waits for, and tells if limits.max_dt is longer than the step may be.

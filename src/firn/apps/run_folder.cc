@@ -129,6 +129,9 @@ void write_run_info(const RunFolder& folder, const Scene& scene, const RunInfo& 
   json["threads"] = info.threads;
   json["simd"] = simd_target();
   json["wall_seconds"] = info.wall_seconds;
+  json["output"] = {{"copying_seconds", info.copying_seconds},
+                    {"waiting_seconds", info.waiting_seconds},
+                    {"writing_seconds", info.writing_seconds}};
   json["checkpoints"] = nlohmann::ordered_json::array();
   for (const CheckpointEntry& entry : info.checkpoints) {
     json["checkpoints"].push_back({{"file", entry.file},
@@ -159,6 +162,10 @@ RunInfo read_run_info(const RunFolder& folder) {
     info.particles = json.at("particles").get<std::int64_t>();
     info.cell_size = json.at("cell_size").get<double>();
     info.wall_seconds = json.at("wall_seconds").get<double>();
+    const nlohmann::json output = json.value("output", nlohmann::json::object());
+    info.copying_seconds = output.value("copying_seconds", 0.0);
+    info.waiting_seconds = output.value("waiting_seconds", 0.0);
+    info.writing_seconds = output.value("writing_seconds", 0.0);
     info.threads = json.at("threads").get<int>();
     for (const nlohmann::json& entry : json.value("checkpoints", nlohmann::json::array())) {
       info.checkpoints.push_back({entry.at("file").get<std::string>(),

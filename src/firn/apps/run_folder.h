@@ -77,8 +77,11 @@ struct RunInfo {
   std::string scene;   ///< the scene file, as given to the run
   std::int64_t frames = 0;
   std::int64_t particles = 0;
-  double cell_size = 0;  ///< m
-  double wall_seconds = 0;
+  double cell_size = 0;        ///< m
+  double wall_seconds = 0;     ///< of the simulation
+  double copying_seconds = 0;  ///< of the copies that frames are written from
+  double waiting_seconds = 0;  ///< that the simulation stood still because the frame before was not written yet
+  double writing_seconds = 0;  ///< of processor time of the thread that writes frames, pictures not counted
   int threads = 0;
   std::vector<std::string> earlier_scenes = {};   ///< hashes of other scenes that frames are of; not read back
   std::vector<CheckpointEntry> checkpoints = {};  ///< in the order of their times

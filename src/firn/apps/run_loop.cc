@@ -7,9 +7,12 @@
 #include <firn/simulation/memory_estimate.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <new>
 #include <optional>
+#include <utility>
 
 namespace firn {
 namespace {
@@ -28,7 +31,30 @@ class FrameLoop {
         output_(job.scene, job.folder, history_of(job)),
         progress_(job.style, job.simulation.frame_count(), job.simulation.frame()) {}
 
+  /// What is said to be there is there, whatever happens.
   void run() {
+    try {
+      compute();
+    } catch (...) {
+      job_.info.frames = output_.written();
+      throw;
+    }
+  }
+
+  /// Everything that was handed over is on the disk, and the film is closed.
+  void finish() {
+    output_.finish();
+    job_.info.frames = output_.written();
+    note_cost();
+  }
+  bool has_film() const { return output_.has_film(); }
+  /// After a failure that was taken back.
+  void save_last_good() {
+    if (!store_.holds(job_.simulation)) save();
+  }
+
+ private:
+  void compute() {
     Simulation& simulation = job_.simulation;
     if (!job_.is_resumed) hand_over(simulation.report());
     // A scene that was changed must not be mixed up with what the checkpoint before says of it.
@@ -41,22 +67,24 @@ class FrameLoop {
     if (!store_.holds(simulation)) save();
   }
 
-  /// Everything that was handed over is on the disk, and the film is closed.
-  void finish() { output_.finish(); }
-  bool has_film() const { return output_.has_film(); }
-  /// After a failure that was taken back.
-  void save_last_good() {
-    if (!store_.holds(job_.simulation)) save();
+  void note_cost() {
+    const OutputCost cost = output_.cost();
+    job_.info.copying_seconds = before_.copying_seconds + copying_;
+    job_.info.waiting_seconds = before_.waiting_seconds + cost.waiting;
+    job_.info.writing_seconds = before_.writing_seconds + cost.writing;
   }
 
- private:
   static FrameHistory history_of(const RunJob& job) {
     if (!job.is_resumed) return {};
     return {job.simulation.frame(), !job.is_changed};
   }
 
   void hand_over(const FrameReport& report) {
-    output_.submit({job_.simulation.snapshot(), report, job_.simulation.totals(), probe_rows(job_.simulation)});
+    output_.wait_for_room();
+    const auto start = std::chrono::steady_clock::now();
+    Snapshot snapshot = job_.simulation.snapshot();
+    copying_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    output_.submit({std::move(snapshot), report, job_.simulation.totals(), probe_rows(job_.simulation)});
     print_line(progress_.line(report));
     job_.info.frames = report.frame;
     job_.info.particles = report.particles;
@@ -66,6 +94,7 @@ class FrameLoop {
   void save() {
     // A checkpoint says that everything before it is there.
     output_.wait();
+    note_cost();
     store_.save(job_.simulation);
   }
 
@@ -73,6 +102,8 @@ class FrameLoop {
   CheckpointStore store_;
   FrameOutput output_;
   Progress progress_;
+  const RunInfo before_ = job_.info;  ///< of the run that goes on
+  double copying_ = 0;                ///< s
 };
 
 /// The status of a run that ends with an error, if it can still be written: the error that is reported is the first.
@@ -100,7 +131,13 @@ std::string newest_text(const RunJob& job) {
 
 void print_results(const RunJob& job, bool has_film) {
   const RunFolder& folder = job.folder;
-  print_line(fmt::format("done in {}", duration_text(job.info.wall_seconds)));
+  // Of all threads together, as the simulation's own time is.
+  const double output =
+      job.info.copying_seconds + job.info.waiting_seconds + job.info.writing_seconds / std::max(job.info.threads, 1);
+  const double all = job.info.wall_seconds + output;
+  // A run of an instant says nothing about costs.
+  const std::string share = all > 1 ? fmt::format("; writing frames took {:.1f} % of it", 100 * output / all) : "";
+  print_line(fmt::format("done in {}{}", duration_text(all), share));
   print_line(fmt::format("  frames    {}  (open {} in ParaView)", folder.particles().string(),
                          (folder.particles() / "particles.hdf.series").string()));
   if (job.scene.render.every_nth > 0) print_line(fmt::format("  pictures  {}", folder.images().string()));

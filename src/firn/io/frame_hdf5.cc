@@ -1,3 +1,4 @@
+#include <firn/io/chunk_filter.h>
 #include <firn/io/frame_hdf5.h>
 
 #include <algorithm>
@@ -79,6 +80,31 @@ Handle create_group(hid_t parent, const std::string& name) {
                 "create the group " + name);
 }
 
+namespace {
+
+/// All rows, chunk by chunk, through our own filter instead of HDF5's.
+void write_chunks(hid_t dataset, const std::string& name, std::size_t element, const void* values, std::size_t rows,
+                  int components) {
+  const std::size_t row = element * static_cast<std::size_t>(components), most = std::min(rows, kChunkRows);
+  const auto* bytes = static_cast<const std::byte*>(values);
+  ChunkFilter filter;
+  std::vector<std::byte> last;
+  for (std::size_t begin = 0; begin < rows; begin += most) {
+    std::span<const std::byte> chunk(bytes + begin * row, std::min(most, rows - begin) * row);
+    if (chunk.size() < most * row) {  // the last chunk is a whole one, too
+      last.assign(chunk.begin(), chunk.end());
+      last.resize(most * row);
+      chunk = last;
+    }
+    const std::vector<std::byte>& filtered = filter.apply(chunk, element);
+    const std::array<hsize_t, 2> offset = {begin, 0};
+    check(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, offset.data(), filtered.size(), filtered.data()),
+          "write the dataset " + name);
+  }
+}
+
+}  // namespace
+
 void write_rows(hid_t group, const std::string& name, hid_t type, const void* values, std::size_t rows,
                 int components) {
   const int rank = components > 0 ? 2 : 1;
@@ -95,9 +121,7 @@ void write_rows(hid_t group, const std::string& name, hid_t type, const void* va
   const Handle space(H5Screate_simple(rank, size.data(), nullptr), H5Sclose, "create a data space");
   const Handle dataset(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose,
                        "create the dataset " + name);
-  if (rows > 0) {
-    check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "write the dataset " + name);
-  }
+  if (rows > 0) write_chunks(dataset, name, H5Tget_size(type), values, rows, std::max(components, 1));
 }
 
 void write_strings(hid_t group, const std::string& name, const std::vector<std::string>& values) {

@@ -1,3 +1,4 @@
+#include <firn/core/parallel.h>
 #include <firn/materials/model_info.h>
 #include <firn/measure/output_columns.h>
 #include <firn/measure/particle_state.h>
@@ -5,10 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace firn {
 namespace {
+
+constexpr std::size_t kGrain = 8192;
 
 template <class T>
 std::vector<T>& column(Snapshot& snapshot, const char* name, const char* unit, const char* help, int components) {
@@ -41,13 +43,20 @@ double shared_value(std::string_view name, int model, const ModelParameters& par
   return 0;
 }
 
+/// Which place each particle gets in the order of ids.
 template <class Real, int dim>
-std::vector<std::uint32_t> id_order(const Particles<Real, dim>& particles) {
-  std::vector<std::uint32_t> order(particles.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return particles.id()[a] < particles.id()[b]; });
-  return order;
+std::vector<std::uint32_t> id_ranks(const Particles<Real, dim>& particles) {
+  const std::size_t count = particles.size();
+  std::vector<std::uint64_t> sorted(count);  // id, then place in memory
+  parallel_chunks(count, kGrain, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) sorted[p] = std::uint64_t(particles.id()[p]) << 32 | p;
+  });
+  tbb::parallel_sort(sorted.begin(), sorted.end());
+  std::vector<std::uint32_t> ranks(count);
+  parallel_chunks(count, kGrain, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) ranks[sorted[i] & 0xffffffff] = static_cast<std::uint32_t>(i);
+  });
+  return ranks;
 }
 
 }  // namespace
@@ -58,41 +67,45 @@ void append_to_snapshot(Snapshot& snapshot, const Particles<Real, dim>& particle
   const std::size_t begin = snapshot.size();
   const auto material = static_cast<std::int32_t>(snapshot.materials.size());
   snapshot.materials.push_back({label.name, label.model, label.preset, begin, begin + particles.size()});
-  const std::vector<std::uint32_t> order = id_order(particles);
+  const std::vector<std::uint32_t> ranks = id_ranks(particles);
 
-  // Looked up one by one because adding a column may move the others.
+  // Looked up one by one because adding a column may move the others. fill(to, p) writes the numbers of a particle.
+  // Particles are read in the order in which they lie in memory and written to their places: the other way round nearly
+  // every number would be fetched from far away.
   const auto append = [&]<class T>(T, const char* name, const char* unit, const char* help, int components,
-                                   auto&& fill) {
+                                   const auto& fill) {
     std::vector<T>& values = column<T>(snapshot, name, unit, help, components);
-    values.reserve(values.size() + order.size() * static_cast<std::size_t>(components));
-    for (const std::uint32_t p : order) fill(values, p);
+    const std::size_t before = values.size(), width = static_cast<std::size_t>(components);
+    values.resize(before + ranks.size() * width);
+    parallel_chunks(ranks.size(), kGrain, [&](std::size_t first, std::size_t last) {
+      for (std::size_t p = first; p < last; ++p) fill(values.data() + before + ranks[p] * width, p);
+    });
   };
-  append(Real(), "position", "m", "Position.", 3, [&](auto& values, std::uint32_t p) {
+  append(Real(), "position", "m", "Position.", 3, [&](Real* to, std::size_t p) {
     const Vec<double, dim> x = particles.position(p, dx, kernel);
-    for (int i = 0; i < 3; ++i) values.push_back(i < dim ? static_cast<Real>(x[i < dim ? i : 0]) : Real(0));
+    for (int i = 0; i < 3; ++i) to[i] = i < dim ? static_cast<Real>(x[i < dim ? i : 0]) : Real(0);
   });
-  append(Real(), "velocity", "m/s", "Velocity.", 3, [&](auto& values, std::uint32_t p) {
-    for (int i = 0; i < 3; ++i)
-      values.push_back(i < dim ? particles.real(Field::velocity, i < dim ? i : 0)[p] : Real(0));
+  append(Real(), "velocity", "m/s", "Velocity.", 3, [&](Real* to, std::size_t p) {
+    for (int i = 0; i < 3; ++i) to[i] = i < dim ? particles.real(Field::velocity, i < dim ? i : 0)[p] : Real(0);
   });
   append(std::int64_t(), "id", "", "Number of the particle, stable over the whole run.", 1,
-         [&](auto& values, std::uint32_t p) { values.push_back(particles.id()[p]); });
+         [&](std::int64_t* to, std::size_t p) { *to = particles.id()[p]; });
   append(std::int32_t(), "body", "", "Index of the body that the particle was seeded in.", 1,
-         [&](auto& values, std::uint32_t p) { values.push_back(static_cast<std::int32_t>(particles.body()[p])); });
+         [&](std::int32_t* to, std::size_t p) { *to = static_cast<std::int32_t>(particles.body()[p]); });
   append(std::int32_t(), "material", "", "Index of the particle's material.", 1,
-         [&](auto& values, std::uint32_t) { values.push_back(material); });
-  const auto volume_ratio_at = [&](std::uint32_t p) {
+         [&](std::int32_t* to, std::size_t) { *to = material; });
+  const auto volume_ratio_at = [&](std::size_t p) {
     return volume_ratio(particle_state(particles, p, parameters), model, parameters);
   };
   append(Real(), "J", "", "Current volume over undeformed volume.", 1,
-         [&](auto& values, std::uint32_t p) { values.push_back(static_cast<Real>(volume_ratio_at(p))); });
+         [&](Real* to, std::size_t p) { *to = static_cast<Real>(volume_ratio_at(p)); });
   append(Real(), "von_mises_stress", "Pa", "Von Mises equivalent of the Cauchy stress.", 1,
-         [&](auto& values, std::uint32_t p) {
-           values.push_back(static_cast<Real>(von_mises(kirchhoff_stress(particles, p)) / volume_ratio_at(p)));
+         [&](Real* to, std::size_t p) {
+           *to = static_cast<Real>(von_mises(kirchhoff_stress(particles, p)) / volume_ratio_at(p));
          });
   append(Real(), "pressure", "Pa", "Minus the mean Cauchy stress: positive in compression.", 1,
-         [&](auto& values, std::uint32_t p) {
-           values.push_back(static_cast<Real>(pressure(kirchhoff_stress(particles, p)) / volume_ratio_at(p)));
+         [&](Real* to, std::size_t p) {
+           *to = static_cast<Real>(pressure(kirchhoff_stress(particles, p)) / volume_ratio_at(p));
          });
   const auto own_column = [&](std::string_view name) {
     int own = -1;
@@ -102,8 +115,8 @@ void append_to_snapshot(Snapshot& snapshot, const Particles<Real, dim>& particle
   for (const HistoryColumn& h : all_history()) {
     const int own = own_column(h.name);
     append(Real(), std::string(h.name).c_str(), std::string(h.unit).c_str(), std::string(h.help).c_str(), 1,
-           [&](auto& values, std::uint32_t p) {
-             values.push_back(own < 0 ? static_cast<Real>(h.initial_value) : particles.history(own)[p]);
+           [&](Real* to, std::size_t p) {
+             *to = own < 0 ? static_cast<Real>(h.initial_value) : particles.history(own)[p];
            });
   }
   for (const Parameter& parameter : label.varied) {
@@ -111,7 +124,7 @@ void append_to_snapshot(Snapshot& snapshot, const Particles<Real, dim>& particle
     const Real shared = static_cast<Real>(shared_value(parameter.name, model, parameters));
     append(Real(), std::string(parameter.name).c_str(), std::string(parameter.unit).c_str(),
            std::string(parameter.help).c_str(), 1,
-           [&](auto& values, std::uint32_t p) { values.push_back(own < 0 ? shared : particles.history(own)[p]); });
+           [&](Real* to, std::size_t p) { *to = own < 0 ? shared : particles.history(own)[p]; });
   }
 }
 

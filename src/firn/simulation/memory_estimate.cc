@@ -15,8 +15,8 @@ namespace {
 
 /// Position and velocity, id, body, material, J, pressure, von Mises stress of a snapshot, and some history.
 constexpr double kSnapshotNumbers = 14;
-/// Frames on their way to the disk.
-constexpr double kSnapshots = 3;
+/// The frame on its way to the disk, and the file that it becomes.
+constexpr double kSnapshots = 1, kFileShare = 0.7;
 /// Cells per particle block; a body's surface cuts blocks, which makes half as many again.
 constexpr double kBlockCells = 64, kSurfaceShare = 1.5;
 
@@ -85,7 +85,8 @@ std::vector<MemoryUse> memory_estimate(const Scene& scene, const WorldPlan& plan
   std::vector<MemoryUse> uses = {
       {"the columns of the particles", columns},
       {"the grid", grid_bytes(scene, plan)},
-      {"frames on their way to the disk", kSnapshots * particles * (kSnapshotNumbers * real_bytes(scene))},
+      {"the frame on its way to the disk",
+       (kSnapshots + kFileShare) * particles * (kSnapshotNumbers * real_bytes(scene))},
       {"a checkpoint that is written", 2 * checkpoint_bytes(scene, plan)}};
   if (scene.rollback == Scene::Rollback::memory) uses.push_back({"their copy for rollback", columns});
   std::stable_sort(uses.begin(), uses.end(), [](const MemoryUse& a, const MemoryUse& b) { return a.bytes > b.bytes; });
