@@ -11,20 +11,22 @@ namespace {
 
 /// The same sum in double, over all points.
 double plain_blend(const std::vector<Vec3d>& points, const Vec3d& x, const BlendLengths& lengths) {
-  double total = 0;
+  double total = 0, nearest = lengths.reach;
   Vec3d sum = {};
   for (const Vec3d& p : points) {
     const double t = 1 - dot(p - x, p - x) / (lengths.reach * lengths.reach);
     if (t <= 0) continue;
+    nearest = std::min(nearest, norm(p - x));
     total += t * t * t;
     sum = sum + t * t * t * p;
   }
-  return total > 0 ? norm((1 / total) * sum - x) - lengths.radius : lengths.reach - lengths.radius;
+  if (total <= 0) return lengths.reach - lengths.radius;
+  return std::max(norm((1 / total) * sum - x) - lengths.radius, nearest - lengths.cover);
 }
 
 TEST(SphereBlend, IsTheFormulaAtEveryVoxel) {
   const std::vector<Vec3d> points = ball(3, 0.8, {{-0.2, 0.03, 0.1}}).positions;
-  const BlendLengths lengths = {0.55 * kSpacing, 2 * kSpacing, 0.5 * kSpacing};
+  const BlendLengths lengths = {0.55 * kSpacing, 2 * kSpacing, 1.2 * kSpacing, 0.5 * kSpacing};
   const SphereBlend blend = blend_spheres(points, CellList(points, lengths.reach), lengths);
   std::size_t near = 0;
   for (std::size_t leaf = 0; leaf < blend.leaves.size(); ++leaf) {
@@ -44,7 +46,7 @@ TEST(SphereBlend, IsTheFormulaAtEveryVoxel) {
 
 TEST(SphereBlend, LeavesHoldEveryVoxelThatAPointReaches) {
   const std::vector<Vec3d> points = {{{0.0501, -0.02, 0}}};
-  const BlendLengths lengths = {0.55 * kSpacing, 2 * kSpacing, 0.5 * kSpacing};
+  const BlendLengths lengths = {0.55 * kSpacing, 2 * kSpacing, 1.2 * kSpacing, 0.5 * kSpacing};
   const SphereBlend blend = blend_spheres(points, CellList(points, lengths.reach), lengths);
   for (int i = -30; i <= 30; ++i) {
     for (int j = -30; j <= 30; ++j) {

@@ -33,8 +33,8 @@ TEST(PolygonMesh, OneStepOfSmoothingIsTheFormula) {
   PolygonMesh cube = unit_cube();
   smooth(cube, 1);
   // Each corner's three neighbours have their mean a third of the way along each edge; by symmetry the cube scales
-  // about its centre, by 1 - 0.5 * 2/3 and then by 1 + 0.53 * 2/3.
-  const double scale = (1 - 0.5 * 2 / 3) * (1 + 0.53 * 2 / 3);
+  // about its centre, by 1 - 0.5 * 2/3 and then by 1 + 0.5 * 2/3.
+  const double scale = (1 - 0.5 * 2 / 3) * (1 + 0.5 * 2 / 3);
   EXPECT_NEAR(cube.vertices[7][0], 0.5 + 0.5 * scale, 1e-14);
   EXPECT_NEAR(cube.vertices[7][1], 0.5 + 0.5 * scale, 1e-14);
   EXPECT_NEAR(cube.vertices[0][2], 0.5 - 0.5 * scale, 1e-14);

@@ -59,6 +59,17 @@ std::vector<std::uint32_t> id_ranks(const Particles<Real, dim>& particles) {
   return ranks;
 }
 
+template <class Real, int dim>
+std::vector<double> volume_ratios(const Particles<Real, dim>& particles, int model, const ModelParameters& parameters) {
+  std::vector<double> ratios(particles.size());
+  parallel_chunks(ratios.size(), kGrain, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) {
+      ratios[p] = volume_ratio(particle_state(particles, p, parameters), model, parameters);
+    }
+  });
+  return ratios;
+}
+
 }  // namespace
 
 template <class Real, int dim>
@@ -94,19 +105,15 @@ void append_to_snapshot(Snapshot& snapshot, const Particles<Real, dim>& particle
          [&](std::int32_t* to, std::size_t p) { *to = static_cast<std::int32_t>(particles.body()[p]); });
   append(std::int32_t(), "material", "", "Index of the particle's material.", 1,
          [&](std::int32_t* to, std::size_t) { *to = material; });
-  const auto volume_ratio_at = [&](std::size_t p) {
-    return volume_ratio(particle_state(particles, p, parameters), model, parameters);
-  };
+  const std::vector<double> ratios = volume_ratios(particles, model, parameters);
   append(Real(), "J", "", "Current volume over undeformed volume.", 1,
-         [&](Real* to, std::size_t p) { *to = static_cast<Real>(volume_ratio_at(p)); });
-  append(Real(), "von_mises_stress", "Pa", "Von Mises equivalent of the Cauchy stress.", 1,
-         [&](Real* to, std::size_t p) {
-           *to = static_cast<Real>(von_mises(kirchhoff_stress(particles, p)) / volume_ratio_at(p));
-         });
-  append(Real(), "pressure", "Pa", "Minus the mean Cauchy stress: positive in compression.", 1,
-         [&](Real* to, std::size_t p) {
-           *to = static_cast<Real>(pressure(kirchhoff_stress(particles, p)) / volume_ratio_at(p));
-         });
+         [&](Real* to, std::size_t p) { *to = static_cast<Real>(ratios[p]); });
+  append(
+      Real(), "von_mises_stress", "Pa", "Von Mises equivalent of the Cauchy stress.", 1,
+      [&](Real* to, std::size_t p) { *to = static_cast<Real>(von_mises(kirchhoff_stress(particles, p)) / ratios[p]); });
+  append(
+      Real(), "pressure", "Pa", "Minus the mean Cauchy stress: positive in compression.", 1,
+      [&](Real* to, std::size_t p) { *to = static_cast<Real>(pressure(kirchhoff_stress(particles, p)) / ratios[p]); });
   const auto own_column = [&](std::string_view name) {
     int own = -1;
     for (int k = 0; k < particles.history_count(); ++k) own = particles.history_spec(k).name == name ? k : own;

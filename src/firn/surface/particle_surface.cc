@@ -11,6 +11,8 @@ namespace {
 /// Spheres blend over their radius and this many spacings: enough to close the gaps between particles that lie at
 /// random, few enough that neighbouring bodies stay apart.
 constexpr double kReachSpacings = 1.45;
+/// Beyond the radius: particles at random leave holes of more than a spacing, which are no holes.
+constexpr double kCoverSpacings = 0.65;
 
 double reach_of(const SurfaceParticles& particles, const SurfaceOptions& options) {
   return (options.radius + kReachSpacings) * particles.spacing;
@@ -39,8 +41,9 @@ ParticleSurface particle_surface(const SurfaceParticles& particles, const Surfac
   const CellList cells(particles.positions, reach);
   ParticleSurface surface;
   {
-    const SphereBlend blend =
-        blend_spheres(particles.positions, cells, {options.radius * particles.spacing, reach, voxel});
+    const SphereBlend blend = blend_spheres(
+        particles.positions, cells,
+        {options.radius * particles.spacing, reach, (options.radius + kCoverSpacings) * particles.spacing, voxel});
     surface.mesh = surface_of(blend);
   }
   smooth(surface.mesh, options.smoothing);

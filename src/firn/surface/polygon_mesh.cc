@@ -7,7 +7,7 @@
 namespace firn {
 namespace {
 
-constexpr double kShrink = 0.5, kGrow = -0.53;
+constexpr double kShrink = 0.5, kGrow = -0.5;
 constexpr std::size_t kGrain = 4096;
 
 /// Neighbours of all vertices, one behind the other.

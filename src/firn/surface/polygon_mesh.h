@@ -19,10 +19,10 @@ struct PolygonMesh {
 /// Quadrilaterals split along their shorter diagonal.
 TriangleMesh triangulated(const PolygonMesh& mesh);
 
-/// Takes bumps from a surface without shrinking it: `passes` times a step of every vertex towards the mean of its
-/// neighbours and a slightly longer one back (Taubin 1995: lambda 0.5, mu -0.53, which leaves what is longer than some
-/// ten edges). Which corners belong together does not change, so a closed surface stays closed. The same bits on any
-/// number of threads.
+/// Takes bumps from a surface without shrinking it: `passes` times a step of every vertex half way to the mean of its
+/// neighbours and a step of the same length back (Taubin 1995 with lambda = -mu = 0.5: what is short loses a quarter of
+/// the square of its Laplacian, what is long stays, and nothing grows). Which corners belong together does not change,
+/// so a closed surface stays closed. The same bits on any number of threads.
 void smooth(PolygonMesh& mesh, int passes);
 
 }  // namespace firn

@@ -14,7 +14,10 @@ constexpr std::size_t kGrain = 512;
 /// Sums over the points near the voxels of one leaf; lengths in voxels from its corner.
 struct alignas(64) LeafSums {
   float weight[kVoxels] = {};
+  float nearest[kVoxels];  ///< squared distance
   float moment[3][kVoxels] = {};
+
+  explicit LeafSums(float farthest) { std::fill_n(nearest, kVoxels, farthest * farthest); }
 };
 
 /// Adds a point to the eight voxels of a row. Apart, and with nothing but plain loops of eight, for the sake of
@@ -22,14 +25,17 @@ struct alignas(64) LeafSums {
 inline void add_to_row(LeafSums& sums, int row, const float (&x)[3], float square_ij, float square_reach,
                        float over_square) {
   float* __restrict weight = sums.weight + row;
+  float* __restrict nearest = sums.nearest + row;
   float* __restrict mx = sums.moment[0] + row;
   float* __restrict my = sums.moment[1] + row;
   float* __restrict mz = sums.moment[2] + row;
   for (int k = 0; k < kSide; ++k) {
     const float dz = x[2] - static_cast<float>(k);
-    const float t = std::max(square_reach - square_ij - dz * dz, 0.0F) * over_square;
+    const float square = square_ij + dz * dz;
+    const float t = std::max(square_reach - square, 0.0F) * over_square;
     const float w = t * t * t;
     weight[k] += w;
+    nearest[k] = std::min(nearest[k], square);
     mx[k] += w * x[0];
     my[k] += w * x[1];
     mz[k] += w * x[2];
@@ -52,7 +58,8 @@ void add_point(LeafSums& sums, const float (&x)[3], float reach) {
 
 /// From the sums to distances, m.
 void finish(const LeafSums& sums, const BlendLengths& lengths, float outside, float* distance) {
-  const auto voxel = static_cast<float>(lengths.voxel), radius = static_cast<float>(lengths.radius);
+  const auto voxel = static_cast<float>(lengths.voxel), radius = static_cast<float>(lengths.radius),
+             cover = static_cast<float>(lengths.cover);
   for (int v = 0; v < kVoxels; ++v) {
     const float weight = sums.weight[v];
     if (!(weight > 0)) {
@@ -66,7 +73,8 @@ void finish(const LeafSums& sums, const BlendLengths& lengths, float outside, fl
       const float d = sums.moment[a][v] / weight - at[a];
       square += d * d;
     }
-    distance[v] = std::min(std::sqrt(square) * voxel - radius, outside);
+    const float blend = std::sqrt(square) * voxel - radius, single = std::sqrt(sums.nearest[v]) * voxel - cover;
+    distance[v] = std::min(std::max(blend, single), outside);
   }
 }
 
@@ -87,7 +95,7 @@ SphereBlend blend_spheres(std::span<const Vec3d> points, const CellList& cells, 
       lower[a] = first[a] - lengths.reach;
       upper[a] = first[a] + (kSide - 1) * voxel + lengths.reach;
     }
-    LeafSums sums;
+    LeafSums sums(reach);
     cells.visit_box(lower, upper, [&](std::uint32_t p) {
       float x[3];
       for (int a = 0; a < 3; ++a) {

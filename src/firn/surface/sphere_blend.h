@@ -11,11 +11,13 @@ namespace firn {
 struct BlendLengths {
   double radius;  ///< of a sphere: how far the surface is from the outermost points
   double reach;   ///< spheres nearer than that blend
+  double cover;   ///< farther than that from every point is outside
   double voxel;
 };
 
 /// Signed distances to a smooth union of spheres around points, negative inside (Zhu & Bridson 2005, section 6):
-/// |x - m(x)| - radius, with m the mean of the points nearer than `reach`, weighted by (1 - d^2 / reach^2)^3. Only a
+/// |x - m(x)| - radius, with m the mean of the points nearer than `reach`, weighted by (1 - d^2 / reach^2)^3, but at
+/// least the distance to the nearest point - cover: halfway between two bodies m is near, and nothing is there. Only a
 /// distance near the surface; -radius deep inside.
 struct SphereBlend {
   LeafSet leaves;
