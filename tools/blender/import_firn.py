@@ -203,7 +203,10 @@ class Run:
                 self.read_scene((folder / "scene.resolved.toml").read_text(encoding="utf-8"))
                 break
         if sequence is not None:
-            self.read_description(sequence.folder / (sequence.stem.rstrip("._") + ".series.json"))
+            name = sequence.stem.rstrip("._")
+            # A folder may hold exports for several programs; the name without a suffix is that of the newest.
+            own = sequence.folder / f"{name}{sequence.suffix}.series.json"
+            self.read_description(own if own.is_file() else sequence.folder / f"{name}.series.json")
 
     def read_description(self, path):
         """What `firn export` says about the files that it wrote."""
