@@ -2,6 +2,7 @@
 #include <firn/io/atomic_file.h>
 #include <firn/io/checkpoint_file.h>
 #include <firn/io/frame_image.h>
+#include <firn/io/shown_text.h>
 #include <fmt/format.h>
 
 #include <array>
@@ -202,7 +203,7 @@ Checkpoint read_all(hid_t file) {
 }
 
 [[noreturn]] void refuse(const std::string& name, const std::string& why) {
-  throw Error(ErrorKind::files, fmt::format("{}: cannot use the checkpoint: {}", name, why));
+  throw Error(ErrorKind::files, fmt::format("{}: cannot use the checkpoint: {}", name, one_line(why)));
 }
 
 [[noreturn]] void refuse_size(const std::string& name, std::uintmax_t found, const CheckpointStamp& stamp) {

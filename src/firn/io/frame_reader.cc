@@ -1,6 +1,7 @@
 #include <firn/core/error.h>
 #include <firn/io/frame_image.h>
 #include <firn/io/frame_reader.h>
+#include <firn/io/shown_text.h>
 
 #include <fmt/format.h>
 
@@ -151,9 +152,9 @@ Snapshot parse_frame(const std::vector<std::byte>& bytes, const std::string& nam
     hdf5::open_image(bytes, [&](hid_t file) { snapshot = read_open_file(file, metadata); });
     return snapshot;
   } catch (const Failure& failure) {
-    throw Error(
-        ErrorKind::files,
-        fmt::format("{}: damaged, or not a frame of Firn: could not {}; compute the frame again", name, failure.what));
+    throw Error(ErrorKind::files,
+                fmt::format("{}: damaged, or not a frame of Firn: could not {}; compute the frame again", name,
+                            one_line(failure.what)));
   }
 }
 
