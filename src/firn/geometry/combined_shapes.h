@@ -2,6 +2,7 @@
 
 #include <firn/geometry/shape.h>
 
+#include <utility>
 #include <vector>
 
 namespace firn {

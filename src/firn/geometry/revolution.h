@@ -2,6 +2,8 @@
 
 #include <firn/geometry/shape.h>
 
+#include <utility>
+
 namespace firn {
 
 /// The solid that a profile sweeps when it turns about the y axis. The profile's x is the distance from the axis. The

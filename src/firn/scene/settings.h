@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// What a scene file says, parsed, validated and in SI units. The initial values here are the defaults; the keys that
