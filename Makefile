@@ -4,7 +4,7 @@ JOBS  ?= $(shell nproc)
 SCENE ?= scenes/snow_cube.toml
 FUZZ_SECONDS ?= 600
 
-.PHONY: all demo test test-clients verify build sanitize bench gallery fuzz format tidy dependencies clean
+.PHONY: all demo test test-clients verify build sanitize sanitize-modules bench gallery fuzz format tidy dependencies clean
 
 all: build
 
@@ -26,11 +26,15 @@ test-clients: dependencies ## open what Firn writes in ParaView, Blender, OpenUS
 	@tools/make_usd_python.sh $(BUILD)/usd-python || echo "firn: PyPI does not give OpenUSD; its check is skipped" >&2
 	FIRN_REQUIRE_CLIENTS="readers paraview blender" ctest --test-dir $(BUILD) --output-on-failure --no-tests=error -L clients
 
-sanitize: dependencies ## the tests under AddressSanitizer and UndefinedBehaviorSanitizer, on two SIMD targets
+sanitize: dependencies ## the tests under AddressSanitizer and UndefinedBehaviorSanitizer, but for the long ones
 	cmake --preset sanitize -B $(BUILD)-sanitize
 	cmake --build $(BUILD)-sanitize --parallel $(JOBS) --target firn_tests
-	FIRN_SIMD=baseline ctest --test-dir $(BUILD)-sanitize --output-on-failure --no-tests=error --parallel $(JOBS) -L sanitize
-	FIRN_SIMD=avx2 ctest --test-dir $(BUILD)-sanitize --output-on-failure --no-tests=error --parallel $(JOBS) -L sanitize
+	ctest --test-dir $(BUILD)-sanitize --output-on-failure --no-tests=error --parallel $(JOBS) -L 'module|program'
+
+sanitize-modules: dependencies ## the same without the tests that drive the program and its window: half of the time
+	cmake --preset sanitize -B $(BUILD)-sanitize
+	cmake --build $(BUILD)-sanitize --parallel $(JOBS) --target firn_module_tests
+	ctest --test-dir $(BUILD)-sanitize --output-on-failure --no-tests=error --parallel $(JOBS) -L module
 
 verify: build ## the problems of docs/verification-scenes.md at full resolution; rewrites its tables
 	cmake --build $(BUILD) --parallel $(JOBS) --target firn_verify

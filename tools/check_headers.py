@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Checks that every header compiles alone: whoever includes it needs nothing else first.
+"""Checks that every header compiles alone: whoever includes it needs nothing else first, and nothing precompiled.
 
     tools/check_headers.py --build build [--jobs 2]     needs build/compile_commands.json
     tools/check_headers.py --self-test                  that a header which leans on another is found
 
-A header that is the first include of a source file of the build is proven by that build and skipped. Results are kept
-in BUILD/check_headers.json by the hash of flags, header and all Firn headers it reaches, so that a second run only looks
+Each is compiled with the flags of the build, precompiled headers and all. What these would hide is found in the text: a
+name of the standard library must come from a header that is included, by itself or through headers of Firn. Results
+are kept in BUILD/check_headers.json by the hash of flags, header and all Firn headers it reaches, so that a second run only looks
 at what has changed. Headers of libraries are taken as unchanging: delete the file after upgrading one.
 """
 
@@ -21,8 +22,50 @@ import sys
 import tempfile
 
 INCLUDE = re.compile(r"^\s*#\s*include\s*<([^>]+)>", re.MULTILINE)
+STANDARD_NAME = re.compile(r"\bstd::(\w+)")
+COMMENT = re.compile(r"//.*")
 LAUNCHERS = {"ccache", "sccache", "distcc"}
 DEFAULT_FLAGS = ["c++", "-std=c++20", "-Wall", "-Wextra", "-Werror"]
+
+# Headers of the standard library, and the names that our headers may take from each.
+PROVIDERS = {
+    "algorithm": "clamp copy_n equal fill fill_n find_if max max_element min ranges",
+    "array": "array get size_t",
+    "atomic": "atomic",
+    "bitset": "bitset size_t",
+    "chrono": "chrono",
+    "cmath": "abs asinh atan ceil copysign exp fabs floor ilogb isfinite ldexp log lround pow signbit sin sqrt tan",
+    "condition_variable": "condition_variable",
+    "cstddef": "byte ptrdiff_t size_t",
+    "cstdint": "int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t",
+    "cstdio": "FILE size_t",
+    "cstdlib": "abs free size_t",
+    "cstring": "memcpy size_t",
+    "exception": "exception_ptr",
+    "filesystem": "filesystem",
+    "functional": "function reference_wrapper",
+    "iosfwd": "istream",
+    "istream": "istream",
+    "limits": "numeric_limits",
+    "map": "map size_t",
+    "memory": "make_unique shared_ptr unique_ptr size_t",
+    "mutex": "mutex",
+    "new": "align_val_t size_t",
+    "numbers": "numbers",
+    "optional": "nullopt optional",
+    "set": "set size_t",
+    "span": "begin end size size_t span",
+    "stdexcept": "runtime_error",
+    "string": "begin end size size_t string to_string",
+    "string_view": "begin end size size_t string_view",
+    "thread": "thread",
+    "type_traits": "conditional_t is_enum_v is_integral_v is_invocable_v is_same_v is_trivially_copyable_v",
+    "utility": "get move pair size_t",
+    "variant": "get get_if variant",
+    "vector": "begin end size size_t vector",
+}
+HEADERS_OF_NAME = {name: {h for h in PROVIDERS if name in PROVIDERS[h].split()} for names in PROVIDERS.values()
+                   for name in names.split()}
 
 
 def compiler_flags(command):
@@ -36,7 +79,7 @@ def compiler_flags(command):
             skip = False
         elif word in ("-o", "-c", "-MF", "-MT"):
             skip = True
-        elif not word.startswith(("-M", "-O")) and not word.endswith((".cc", ".o")):
+        elif not word.startswith("-M") and not word.endswith((".cc", ".o")):
             flags.append(word)
     return flags
 
@@ -46,19 +89,16 @@ class HeaderCheck:
         self.source = pathlib.Path(root) / "src"
         self.cache_file = cache_file
         self.cache = json.loads(cache_file.read_text()) if cache_file and cache_file.is_file() else {}
-        self.flags_of_folder, self.first_includes = {}, set()
+        self.flags_of_folder = {}
         self.compiled = 0
         for entry in commands:
             path = pathlib.Path(entry["file"])
             if self.source in path.parents:
                 self.flags_of_folder[path.parent] = compiler_flags(entry["command"])
-                if first := INCLUDE.search(path.read_text()):
-                    self.first_includes.add(first[1])
         self.fallback = next(iter(self.flags_of_folder.values()), DEFAULT_FLAGS + [f"-I{self.source}"])
 
     def headers(self):
-        names = sorted(str(p.relative_to(self.source)) for p in self.source.rglob("*.h"))
-        return [name for name in names if name not in self.first_includes]
+        return sorted(str(p.relative_to(self.source)) for p in self.source.rglob("*.h"))
 
     def reached_text(self, name, seen):
         """The text of a header and of all Firn headers that it includes, each once."""
@@ -67,6 +107,17 @@ class HeaderCheck:
         seen.add(name)
         text = (self.source / name).read_text()
         return text + "".join(self.reached_text(n, seen) for n in INCLUDE.findall(text) if n.startswith("firn/"))
+
+    def missing_includes(self, name):
+        """Messages for the names of the standard library whose header is not included."""
+        included = set(INCLUDE.findall(self.reached_text(name, set())))
+        text = COMMENT.sub("", (self.source / name).read_text())
+        for used in sorted(set(STANDARD_NAME.findall(text))):
+            headers = HEADERS_OF_NAME.get(used)
+            if headers is None:
+                yield f"std::{used} is not in the table of tools/check_headers.py: add it to the line of its header"
+            elif not headers & included:
+                yield f"std::{used} needs #include <{'> or <'.join(sorted(headers))}>"
 
     def compile(self, name):
         """(name, cache key, messages of the compiler if it fails)"""
@@ -83,6 +134,8 @@ class HeaderCheck:
     def run(self, jobs):
         findings = []
         names = self.headers()
+        for name in names:
+            findings += [f"src/{name}: {message}" for message in self.missing_includes(name)]
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
             for name, key, errors in pool.map(self.compile, names):
                 if errors:
@@ -98,6 +151,8 @@ def self_test():
     files = {
         "good.h": "#pragma once\n#include <vector>\ninline std::vector<int> numbers() { return {1}; }\n",
         "uses_good.h": "#pragma once\n#include <firn/core/good.h>\ninline auto size() { return numbers().size(); }\n",
+        "bare.h": "#pragma once\nnamespace std { template <class T> class vector; class odd; }\n"
+                  "std::vector<int>* no_include(std::odd*);\n",
         "leans.h": "#pragma once\ninline auto leaning() { return numbers().size(); }\n",
         "unguarded.h": "struct Twice {};\n",
     }
@@ -108,11 +163,11 @@ def self_test():
             (folder / name).write_text(text)
         cache = pathlib.Path(root) / "cache.json"
         found = [finding.split(":")[0] for finding in HeaderCheck(root, [], cache).run(2)[0]]
-        wanted = ["src/firn/core/leans.h", "src/firn/core/unguarded.h"]
+        wanted = ["src/firn/core/bare.h", "src/firn/core/bare.h", "src/firn/core/leans.h", "src/firn/core/unguarded.h"]
         if found != wanted:
             return [f"expected findings in {wanted}, got {found}"]
         # What passed is remembered; what it includes counts as part of it.
-        if sorted(json.loads(cache.read_text())) != ["firn/core/good.h", "firn/core/uses_good.h"]:
+        if sorted(json.loads(cache.read_text())) != ["firn/core/bare.h", "firn/core/good.h", "firn/core/uses_good.h"]:
             return [f"unexpected cache: {cache.read_text()}"]
         (folder / "good.h").write_text("#pragma once\n")
         found = [finding.split(":")[0] for finding in HeaderCheck(root, [], cache).run(2)[0]]

@@ -8,9 +8,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <sstream>
 #include <string>
+
+#include "support/text_match.h"
 
 namespace firn::test {
 
@@ -39,12 +40,6 @@ inline ProgramResult run_firn(const std::string& arguments, const std::string& e
   result.errors = text.str();
   std::remove(errors.c_str());
   return result;
-}
-
-/// True if the whole text matches the regular expression (ECMAScript).
-inline testing::AssertionResult matches(const std::string& text, const std::string& pattern) {
-  if (std::regex_match(text, std::regex(pattern))) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << "\n  text:    " << text << "\n  pattern: " << pattern;
 }
 
 }  // namespace firn::test

@@ -5,9 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include <regex>
 #include <string>
 #include <vector>
+
+#include "support/text_match.h"
 
 namespace firn::test {
 
@@ -44,18 +45,6 @@ inline std::string error_of(const std::string& text, const std::vector<std::stri
     return error.what();
   }
   return "";
-}
-
-/// True if the whole text matches the regular expression (ECMAScript).
-inline testing::AssertionResult matches(const std::string& text, const std::string& pattern) {
-  if (std::regex_match(text, std::regex(pattern))) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << "\n  text:    " << text << "\n  pattern: " << pattern;
-}
-
-/// True if the text contains the part.
-inline testing::AssertionResult contains(const std::string& text, const std::string& part) {
-  if (text.find(part) != std::string::npos) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << "\n  text: " << text << "\n  lacks: " << part;
 }
 
 }  // namespace firn::test

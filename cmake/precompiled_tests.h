@@ -1,0 +1,4 @@
+#pragma once
+
+#include "precompiled_sources.h"
+#include <gtest/gtest.h>
