@@ -9,6 +9,7 @@
 #include <firn/apps/viewer/recorder.h>
 #include <firn/apps/viewer/scene_painter.h>
 #include <firn/apps/viewer/start_page.h>
+#include <firn/apps/viewer/surface_view.h>
 #include <firn/apps/viewer/window.h>
 #include <firn/apps/viewer/window_display.h>
 #include <firn/core/error.h>
@@ -18,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <functional>
 #include <optional>
 #include <utility>
@@ -34,6 +36,13 @@ constexpr int kDrawsPerEvent = 3;
 constexpr int kWideWindow = 1000;
 /// A press and a release this close to each other are a click, pixels.
 constexpr double kClickReach = 4;
+
+/// Of this thread, s: what others do on the same processor does not count.
+double processor_seconds() {
+  timespec time = {};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 ViewerWindow& of(GLFWwindow* window) { return *static_cast<ViewerWindow*>(glfwGetWindowUserPointer(window)); }
 
@@ -73,16 +82,17 @@ struct ViewerWindow::State {
   PicturePlace place() const;
   void draw_scene();
   void draw_interface();
-  void read_picture();
   void serve();
-  void record();
+  bool update_scene(double seconds);
+  void record(bool fresh);
   void guarded(const std::function<void()>& work);
   bool key_of_window(int key, int mods);
   void click();
   bool on_start_page() const { return controls == nullptr; }
 
   const Options options;
-  WindowDisplay display;  // first: all below needs its context
+  SurfaceView surface;    // before the display: who closes the window need not see it wait for a surface
+  WindowDisplay display;  // before all below, which needs its context
   WindowInterface interface;
   const bool software;
   StartPage start_page;
@@ -102,6 +112,7 @@ struct ViewerWindow::State {
   bool shift = false;
   bool dragging = false;
   bool recolor = false;
+  bool film_waits = false;            // a frame has come that is not in the film yet
   int wanted_draws = kDrawsPerEvent;  // pictures that what happened asks for
 };
 
@@ -144,6 +155,9 @@ void ViewerWindow::State::leave() {
   guarded([&] {
     if (recorder) recorder->stop();
   });
+  if (controls) controls->source().pace(false);
+  surface.clear();
+  film_waits = false;
   controls.reset();
   painter.reset();
   recorder.reset();
@@ -253,39 +267,52 @@ void ViewerWindow::State::serve() {
   if (std::exchange(panel.wants_start_page, false) && notes.has_start_page) leave();
 }
 
-/// A new frame becomes a picture of the film, panels included if they are seen.
-void ViewerWindow::State::record() {
-  if (on_start_page() || !recorder->recording()) return;
-  guarded([&] {
-    read_picture();
-    recorder->add(picture);
-    if (!recorder->recording()) {
-      notes.message =
-          fmt::format("the window changed its size, which ends the film: {}", recorder->film_path().string());
-    }
-  });
+/// A new frame becomes a picture of the film, panels included if they are seen; that of a surface when its surface is
+/// in it.
+void ViewerWindow::State::record(bool fresh) {
+  if (on_start_page()) return;
+  film_waits = recorder->recording() && (film_waits || fresh);
+  if (film_waits && surface.settled()) {
+    film_waits = false;
+    guarded([&] {
+      picture = display.read_picture();
+      recorder->add(picture);
+      if (!recorder->recording()) {
+        notes.message =
+            fmt::format("the window changed its size, which ends the film: {}", recorder->film_path().string());
+      }
+    });
+  }
   notes.recording = recorder->recording();
   notes.pictures = recorder->pictures();
+  FrameSource& source = controls->source();
+  source.pace(notes.recording && surface.notes().wanted);
+  if (!film_waits) source.taken(controls->status().published);
+}
+
+/// Takes what is new of the scene; true if there is a new frame.
+bool ViewerWindow::State::update_scene(double seconds) {
+  controls->source().advance(film_waits ? 0 : seconds);
+  const bool fresh = controls->update();
+  const auto meshed = surface.update(*controls);
+  notes.surface = surface.notes();
+  painter->update(*controls, meshed, std::exchange(recolor, false));
+  return fresh;
 }
 
 void ViewerWindow::draw() {
   State& s = *state_;
   glfwPollEvents();
   s.serve();
-  const double start = glfwGetTime();
-  bool fresh = false;
-  if (!s.on_start_page()) {
-    s.controls->source().advance(s.last_draw ? start - *s.last_draw : 0);
-    fresh = s.controls->update();
-    s.painter->update(*s.controls, fresh, std::exchange(s.recolor, false));
-  }
-  s.last_draw = start;
-  const double uploaded = glfwGetTime();
+  const double now = glfwGetTime(), start = processor_seconds();
+  const bool fresh = !s.on_start_page() && s.update_scene(s.last_draw ? now - *s.last_draw : 0);
+  s.last_draw = now;
+  const double uploaded = processor_seconds();
   if (fresh) s.times.upload = uploaded - start;
   s.draw_scene();
   s.draw_interface();
-  s.times.draw = glfwGetTime() - uploaded;
-  if (fresh) s.record();
+  s.times.draw = processor_seconds() - uploaded;
+  s.record(fresh);
   s.notes.frame_milliseconds = 1e3 * (s.times.draw + (fresh ? s.times.upload : 0));
   s.wanted_draws = std::max(s.wanted_draws - 1, 0);
   glfwSwapBuffers(s.display.window());
@@ -294,6 +321,7 @@ void ViewerWindow::draw() {
 void ViewerWindow::run() {
   State& s = *state_;
   SourceStatus shown;
+  std::uint64_t surface_shown = 0;
   bool was_moving = false;
   while (glfwWindowShouldClose(s.display.window()) == GLFW_FALSE) {
     glfwPollEvents();
@@ -309,8 +337,10 @@ void ViewerWindow::run() {
       was_moving = s.controls->moving(glfwGetTime());
       // Software OpenGL would take the simulation's processors for pictures that do not differ.
       const bool playback = source.follows_clock() && now.state == PlayState::playing;
-      wanted = wanted || changed || was_moving || playback;
+      const std::uint64_t surface_now = s.surface.version();
+      wanted = wanted || changed || was_moving || playback || surface_now != surface_shown;
       shown = now;
+      surface_shown = surface_now;
     }
     if (wanted) {
       draw();
@@ -323,24 +353,11 @@ void ViewerWindow::run() {
   });
 }
 
-void ViewerWindow::State::read_picture() {
-  int width = 0, height = 0;
-  glfwGetFramebufferSize(display.window(), &width, &height);
-  Image upside_down(width, height);
-  picture = Image(width, height);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, upside_down.rgb.data());
-  for (int y = 0; y < height; ++y) {
-    const auto* row = upside_down.pixel(0, height - 1 - y);
-    std::copy(row, row + 3 * width, picture.pixel(0, y));
-  }
-}
-
 const Image& ViewerWindow::capture() {
   // What is in the back buffer after a swap is undefined: the picture is drawn once more, and not shown.
   state_->draw_scene();
   if (ImGui::GetDrawData() != nullptr) ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-  state_->read_picture();
+  state_->picture = state_->display.read_picture();
   return state_->picture;
 }
 
@@ -369,6 +386,10 @@ bool ViewerWindow::State::key_of_window(int key, int mods) {
       return true;
     case GLFW_KEY_L:
       panel.soft_light = !panel.soft_light;
+      return true;
+    case GLFW_KEY_U:
+      controls->key('u');
+      notes.message = controls->can_have_surface() ? "" : kNoSurfaceIn2D;
       return true;
     case GLFW_KEY_I:
       panel.wants_picture = true;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <string_view>
 
 namespace firn {
@@ -57,6 +58,19 @@ bool WindowDisplay::software() const {
     if (renderer.find(name) != std::string_view::npos) return true;
   }
   return false;
+}
+
+Image WindowDisplay::read_picture() const {
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(window_, &width, &height);
+  Image upside_down(width, height), picture(width, height);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, upside_down.rgb.data());
+  for (int y = 0; y < height; ++y) {
+    const auto* row = upside_down.pixel(0, height - 1 - y);
+    std::copy(row, row + 3 * width, picture.pixel(0, y));
+  }
+  return picture;
 }
 
 void WindowDisplay::require() {
