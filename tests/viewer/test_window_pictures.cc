@@ -36,48 +36,57 @@ TEST_F(Window, LooksAsItDid) {
   test::expect_as_reference("von_mises_stress", by_stress, by_material);
 }
 
-/// What a million particles cost the processor in one picture: the copy of a snapshot, and the calls. Software OpenGL
-/// draws on the processor inside some of these calls; so they are also counted with one particle in as many calls. The
-/// least of some times, which a busy machine does not make longer.
+/// Shows two frames in turn, so that neither is what the processor has just read.
+class TwoFrames final : public FrameSource {
+ public:
+  TwoFrames(std::size_t particles, bool doubles) {
+    for (auto& frame : frames_) frame = make(particles, doubles);
+    next();
+  }
+  void play() override {}
+  void pause() override {}
+  void step() override {}
+  void reset() override {}
+  void run_to(std::int64_t) override {}
+  void seek(std::int64_t) override {}
+  void next() {
+    const std::lock_guard lock(mutex_);
+    snapshot_ = frames_[status_.published++ % 2];
+    status_.state = PlayState::paused;
+  }
+
+ private:
+  static std::shared_ptr<const Snapshot> make(std::size_t particles, bool doubles) {
+    auto snapshot = std::make_shared<Snapshot>();
+    snapshot->particle_spacing = 0.01;
+    snapshot->materials = {{"stuff", "snow", "snow", 0, particles}};
+    std::vector<float> x(3 * particles);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>((i * 7919) % 1009) * 1e-3F;
+    for (const auto& [name, unit] : {std::pair("position", "m"), {"velocity", "m/s"}}) {
+      snapshot->columns.push_back({name, unit, "", 3, x});
+      if (doubles) snapshot->columns.back().values = std::vector<double>(x.begin(), x.end());
+    }
+    return snapshot;
+  }
+  std::shared_ptr<const Snapshot> frames_[2];
+};
+
+/// What a million particles cost the processor in one picture: the copy of a snapshot, and the calls, in processor
+/// time. Software OpenGL draws on the processor inside some of these calls; so they are counted with one particle in as
+/// many calls. Of all tries the least counts, which a busy machine makes longer least.
 TEST_F(Window, CpuSideOfAMillionParticles) {
   constexpr std::size_t kParticles = 1000000;
-  class Source final : public FrameSource {
-   public:
-    Source(std::size_t count, bool doubles) : count_(count), doubles_(doubles) { next(); }
-    void play() override {}
-    void pause() override {}
-    void step() override {}
-    void reset() override {}
-    void run_to(std::int64_t) override {}
-    void seek(std::int64_t) override {}
-    void next() {
-      auto snapshot = std::make_shared<Snapshot>();
-      snapshot->particle_spacing = 0.01;
-      snapshot->materials = {{"stuff", "snow", "snow", 0, count_}};
-      std::vector<float> x(3 * count_);
-      for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>((i * 7919) % 1009) * 1e-3F;
-      for (const auto& [name, unit] : {std::pair("position", "m"), {"velocity", "m/s"}}) {
-        snapshot->columns.push_back({name, unit, "", 3, x});
-        if (doubles_) snapshot->columns.back().values = std::vector<double>(x.begin(), x.end());
-      }
-      const std::lock_guard lock(mutex_);
-      snapshot_ = snapshot;
-      ++status_.published;
-      status_.state = PlayState::paused;
-    }
-
-   private:
-    std::size_t count_;
-    bool doubles_;
-  };
+  constexpr double kTarget = 8e-3;  // s
   const auto measure = [&](std::size_t count, const char* column, bool doubles) {
-    Source source(count, doubles);
+    TwoFrames source(count, doubles);
     ViewerWindow::Options options = options_;
     options.width = options.height = 64;
     ViewerWindow window(scene_, source, options);
     window.controls().color_by = column;
+    // The particles are copied and, with the grid alone, not drawn.
+    if (count > 1) window.controls().set_shown(ViewControls::Shown::grid);
     ViewerWindow::Times least = {1e9, 1e9};
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < 40 && (i < 6 || least.upload + least.draw > kTarget); ++i) {
       source.next();
       window.draw();
       least.upload = std::min(least.upload, window.times().upload);
@@ -87,13 +96,16 @@ TEST_F(Window, CpuSideOfAMillionParticles) {
     EXPECT_EQ(window.error(), 0U);
     return least;
   };
-  const auto look = measure(kParticles, "", false), column = measure(kParticles, "velocity", false);
-  const auto doubles = measure(kParticles, "velocity", true), calls = measure(1, "velocity", false);
-  test::record("upload_ms_by_material", 1e3 * look.upload);
-  test::record("upload_ms_by_velocity", 1e3 * column.upload);
-  test::record("upload_ms_by_velocity_in_double_precision", 1e3 * doubles.upload);
-  test::record("calls_ms", 1e3 * calls.draw);
-  test::record("calls_ms_with_software_vertices", 1e3 * column.draw);
+  const double calls = measure(1, "velocity", false).draw;
+  test::record("calls_ms", 1e3 * calls);
+  const auto check = [&](const char* name, const char* column, bool doubles) {
+    const double upload = measure(kParticles, column, doubles).upload;
+    test::record(name, 1e3 * upload);
+    EXPECT_LT(upload + calls, kTarget) << name;
+  };
+  check("upload_ms_by_material", "", false);
+  check("upload_ms_by_velocity", "velocity", false);
+  check("upload_ms_by_velocity_in_double_precision", "velocity", true);
 }
 
 /// Makes docs/images/viewer.png and the pictures of docs/images/viewer (as PNG; tools of one's choice turn them into

@@ -72,8 +72,7 @@ void draw_surface_note(const SurfaceNotes& surface, std::int64_t frame, PanelSta
   } else if (surface.frame != frame) {
     text = fmt::format("surface of frame {}{}", surface.frame, surface.busy ? " ..." : "");
   } else {
-    text = fmt::format("surface: {:.3g}k triangles{}", 1e-3 * static_cast<double>(surface.triangles),
-                       surface.busy ? " ..." : fmt::format(", {:.2f} s", surface.seconds));
+    text = surface.busy ? "surface is being changed" : fmt::format("surface: {} triangles", surface.triangles);
   }
   const bool lags = surface.frame != frame;
   ImGui::TextColored(lags ? amber : ImGui::GetStyleColorVec4(ImGuiCol_Text), "%s", text.c_str());

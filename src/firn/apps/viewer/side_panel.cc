@@ -36,7 +36,7 @@ void draw_clip(ViewControls& controls, PanelState& state) {
 }
 
 /// In particle spacings, as `firn surface` has them.
-void draw_surface_options(ViewControls& controls, PanelState& state) {
+void draw_surface_options(ViewControls& controls, const SurfaceNotes& notes, PanelState& state) {
   SurfaceOptions& options = controls.surface_options;
   const auto slider = [&](const char* label, double* value, float low, float high, const char* help) {
     auto shown = static_cast<float>(*value);
@@ -55,9 +55,10 @@ void draw_surface_options(ViewControls& controls, PanelState& state) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("passes that take bumps away and keep the volume");
   if (ImGui::SmallButton("as firn surface does")) options = {};
   mark(state, "surface defaults");
+  if (notes.triangles > 0) ImGui::TextDisabled("made in %.2f s", notes.seconds);
 }
 
-void draw_material_choice(ViewControls& controls, PanelState& state) {
+void draw_material_choice(ViewControls& controls, const SurfaceNotes& notes, PanelState& state) {
   if (ImGui::RadioButton("particles", !controls.as_surface())) controls.set_as_surface(false);
   mark(state, "particles");
   ImGui::SameLine();
@@ -67,14 +68,14 @@ void draw_material_choice(ViewControls& controls, PanelState& state) {
   ImGui::EndDisabled();
   mark(state, "surface");
   if (!possible && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", kNoSurfaceIn2D);
-  if (controls.as_surface()) draw_surface_options(controls, state);
+  if (controls.as_surface()) draw_surface_options(controls, notes, state);
 }
 
 bool draw_view_tab(ViewControls& controls, const PanelNotes& notes, PanelState& state) {
   using Shown = ViewControls::Shown;
   const bool recolor = draw_colors(controls, notes, state);
   ImGui::Separator();
-  draw_material_choice(controls, state);
+  draw_material_choice(controls, notes.surface, state);
   ImGui::Separator();
   const char* names[] = {"no grid", "with the grid", "grid alone"};
   for (int i = 0; i < 3; ++i) {
