@@ -292,6 +292,7 @@ TEST_F(WindowModes, TheStartPageOpensASceneByDoubleClick) {
   std::filesystem::path opened;
   options.open = [&](const std::filesystem::path& path) -> Show {
     opened = path;
+    ViewerWindow::require_display();  // as the program does before it builds a scene; the window must survive it
     if (path.stem() == "concrete") throw Error(ErrorKind::usage, "no concrete today");
     return {scene_, std::make_unique<SimulationPlayer>(scene_), "test"};
   };

@@ -47,7 +47,7 @@ void draw_surface_options(ViewControls& controls, const SurfaceNotes& notes, Pan
   };
   slider("radius", &options.radius, 0.3F, 3, "how far it is from the outermost particles, in their spacings");
   slider("voxel", &options.voxel, 0.2F, 3, "how fine it is, in particle spacings; smaller ones take longer");
-  // What is finer than this, the spheres would slip through.
+  // Spheres that are thinner than this would slip through the voxels.
   options.voxel = std::min(options.voxel, 1.5 * options.radius);
   ImGui::SetNextItemWidth(150);
   ImGui::SliderInt("smoothing", &options.smoothing, 0, 40, "%d", ImGuiSliderFlags_AlwaysClamp);

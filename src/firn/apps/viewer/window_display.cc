@@ -16,6 +16,9 @@
 namespace firn {
 namespace {
 
+/// Windows that are open, all in the main thread.
+int living = 0;
+
 std::string last_glfw_error() {
   const char* text = nullptr;
   return glfwGetError(&text) != GLFW_NO_ERROR && text != nullptr ? text : "no reason given";
@@ -42,11 +45,13 @@ WindowDisplay::WindowDisplay(int width, int height, const std::string& title) {
     glfwTerminate();
     fail_to_open(reason);
   }
+  ++living;
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
 }
 
 WindowDisplay::~WindowDisplay() {
+  --living;
   glfwDestroyWindow(window_);
   glfwTerminate();
 }
@@ -74,6 +79,8 @@ Image WindowDisplay::read_picture() const {
 }
 
 void WindowDisplay::require() {
+  // Whoever has a window has a display; to end GLFW would take the window away.
+  if (living > 0) return;
   if (glfwInit() == GLFW_FALSE) fail_to_open(last_glfw_error());
   glfwTerminate();
 }
