@@ -2,18 +2,13 @@
 
 #include <firn/render/image.h>
 
-#include <filesystem>
 #include <string>
 
 namespace firn::test {
 
-/// A quarter as wide and high, each pixel the mean of 16: what drivers do differently at edges averages out.
-Image reduced(const Image& picture);
-
-/// The picture in tests/viewer/pictures/NAME.png; without pixels if there is none.
-Image reference_picture(const std::string& name);
-
-/// Share of pixels that differ in a channel by more than `tolerance`; 1 if the sizes differ.
-double share_of_different(const Image& a, const Image& b, int tolerance);
+/// A picture of the test window against the one in tests/viewer/pictures/NAME.png, which was looked at, and as a
+/// negative control against another one. The panel, which tells times, is left out. To renew it:
+/// FIRN_TEST_PICTURES=tests/viewer/pictures, and look.
+void expect_as_reference(const std::string& name, const Image& picture, const Image& other);
 
 }  // namespace firn::test

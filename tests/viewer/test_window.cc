@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "viewer/fake_simulation.h"
-#include "viewer/window_events.h"
 #include "viewer/window_fixture.h"
 
 namespace firn {
@@ -49,20 +48,20 @@ TEST_F(Window, SpacePlaysAndPausesAndResetReturns) {
   ViewerWindow window(scene_, player, options_);
   ASSERT_TRUE(paused_at(window, 1));
   const Image first = window.capture();
-  press(window, GLFW_KEY_PERIOD);
+  press(window, ".");
   ASSERT_TRUE(paused_at(window, 2));
   const Image second = window.capture();
   EXPECT_GT(find(second, red).y, find(first, red).y + 10) << "it falls";
   window.draw();
   EXPECT_EQ(difference(second, window.capture()), 0) << "paused means still";
-  press(window, GLFW_KEY_SPACE);
+  press(window, " ");
   ASSERT_TRUE(reaches(window, [](const SourceStatus& s) { return s.state == PlayState::finished; }));
   EXPECT_GT(difference(second, window.capture()), 0.02);
-  press(window, GLFW_KEY_R);
+  press(window, "r");
   ASSERT_TRUE(paused_at(window, 1));
   EXPECT_LT(difference(first, window.capture()), 1e-3);
-  press(window, GLFW_KEY_SPACE);
-  press(window, GLFW_KEY_SPACE);
+  press(window, " ");
+  press(window, " ");
   EXPECT_TRUE(reaches(window, [](const SourceStatus& s) {
     return (s.state == PlayState::paused || s.state == PlayState::finished) && !s.busy;
   }));
@@ -74,23 +73,23 @@ TEST_F(Window, TheMouseMovesTheCameraAndFrameAllBringsItBack) {
   ViewerWindow window(scene_, player, options_);
   ASSERT_TRUE(paused_at(window, 1));
   const Found start = find(window.capture(), red);
-  drag(window, GLFW_MOUSE_BUTTON_RIGHT, 90, 40);
+  drag(window, kRight, 90, 40);
   rest(window);
   const Found panned = find(window.capture(), red);
   EXPECT_NEAR(panned.x - start.x, 90, 8) << "the ball stays under the mouse";
   EXPECT_NEAR(panned.y - start.y, 40, 8);
-  window.on_scroll(0, 4);
+  wheel(window, 4);
   rest(window);
   EXPECT_GT(find(window.capture(), red).count, 1.5 * panned.count);
-  press(window, GLFW_KEY_F);
+  press(window, "f");
   EXPECT_GT(find(window.capture(), red).count, 1.5 * panned.count) << "it fills the picture";
-  window.on_scroll(0, -6);  // out from under the panel
+  wheel(window, -6);  // out from under the panel
   rest(window);
   const Found framed = find(window.capture(), red);
   EXPECT_NEAR(framed.x, kWidth / 2.0, 10);
   EXPECT_NEAR(framed.y, kHeight / 2.0, 10);
   const Image level = window.capture();
-  drag(window, GLFW_MOUSE_BUTTON_LEFT, 0, 60);
+  drag(window, kLeft, 0, 60);
   rest(window);
   const Found above = find(window.capture(), red);
   EXPECT_NEAR(above.x, framed.x, 6) << "orbiting about the ball leaves it in the middle";
@@ -106,7 +105,7 @@ TEST_F(Window, AnOrbitMovesWhatIsBesideTheTarget) {
   ViewerWindow window(scene, player, options_);
   ASSERT_TRUE(paused_at(window, 1));
   const Found before = find(window.capture(), red);
-  drag(window, GLFW_MOUSE_BUTTON_LEFT, 60, 0);
+  drag(window, kLeft, 60, 0);
   rest(window);
   EXPECT_GT(find(window.capture(), red).x, before.x + 15) << "what is in front follows the mouse";
 }
@@ -125,8 +124,11 @@ TEST_F(Window, ColoursByAColumnWithABar) {
     write_png(std::string(folder) + "/window_colors.png", window.capture());
   }
   ASSERT_EQ(window.controls().color_by, "velocity");
-  window.controls().range = {0, 4};
-  window.controls().source().step();
+  click(window, "automatic range");
+  enter(window, "range", "0", 0.2);
+  enter(window, "range", "4", 0.7);
+  ASSERT_EQ(window.controls().range, (std::array<double, 2>{0, 4}));
+  press(window, ".");
   ASSERT_TRUE(paused_at(window, 2));
   const Image by_speed = window.capture();
   EXPECT_GT(find(by_material, red).count, 1000);
@@ -155,8 +157,8 @@ TEST_F(Window, ThinsWhileTheCameraMovesAndSaysSo) {
   const std::size_t all = window.notes().drawn;
   EXPECT_FALSE(window.notes().thinned);
   const Found still = find(window.capture(), red);
-  window.on_scroll(0, 1e-6);
-  window.draw();
+  wheel(window, 1);
+  wheel(window, -1);
   EXPECT_TRUE(window.notes().thinned);
   EXPECT_LE(window.notes().drawn, 500U);
   const Found moving = find(window.capture(), red);
@@ -174,7 +176,7 @@ TEST_F(Window, AFailureShowsItsReportAndTheWindowLives) {
   ViewerWindow window(scene_, player, options_);
   ASSERT_TRUE(paused_at(window, 1));
   const Image before = window.capture();
-  press(window, GLFW_KEY_SPACE);
+  press(window, " ");
   ASSERT_TRUE(reaches(window, [](const SourceStatus& s) { return s.state == PlayState::failed; }));
   const Image report = window.capture();
   // The report lies in the lower left corner, dark.
@@ -187,44 +189,9 @@ TEST_F(Window, AFailureShowsItsReportAndTheWindowLives) {
   EXPECT_GT(mark.count, 50);
   EXPECT_NEAR(mark.x, kWidth / 2.0, 2);
   EXPECT_NEAR(mark.y, kHeight / 2.0 * (1 + 0.125 / std::tan(20 * M_PI / 180)), 2);
-  press(window, GLFW_KEY_R);
+  press(window, "r");
   ASSERT_TRUE(paused_at(window, 1));
   EXPECT_LT(difference(before, window.capture()), 1e-3);
-}
-
-TEST_F(Window, ListensToTheDisplaysKeysAndMouse) {
-  SimulationPlayer player([this] { return Simulation::create(scene_); });
-  ViewerWindow window(scene_, player, options_);
-  ASSERT_TRUE(paused_at(window, 1));
-  const Found start = find(window.capture(), red);
-  const test::WindowEvents events("test");
-  events.key('.');
-  ASSERT_TRUE(paused_at(window, 2)) << "the step";
-  events.key('r');
-  ASSERT_TRUE(paused_at(window, 1)) << "the reset";
-  const auto settle = [&] {
-    for (int i = 0; i < 3; ++i) {
-      std::this_thread::sleep_for(20ms);
-      window.draw();
-    }
-  };
-  events.move(400, 300);
-  settle();
-  events.button(3, true, 400, 300);
-  settle();
-  events.move(460, 330);
-  settle();
-  events.button(3, false, 460, 330);
-  rest(window);
-  const Found panned = find(window.capture(), red);
-  EXPECT_NEAR(panned.x - start.x, 60, 6);
-  EXPECT_NEAR(panned.y - start.y, 30, 6);
-  events.button(4, true, 460, 330);  // a notch of the wheel
-  settle();
-  rest(window);
-  EXPECT_GT(find(window.capture(), red).count, 1.1 * panned.count);
-  events.key(' ');
-  EXPECT_TRUE(reaches(window, [](const SourceStatus& s) { return s.state == PlayState::finished; }));
 }
 
 TEST_F(Window, TheTimeLineGoesToAFrame) {
@@ -245,10 +212,21 @@ TEST_F(Window, TheTimeLineGoesToAFrame) {
   click(window, "time line", 0.98);
   ASSERT_TRUE(paused_at(window, 4));
   EXPECT_GT(find(window.capture(), red).y, first.y + 30) << "it has fallen";
-  press(window, GLFW_KEY_R);
+  press(window, "r");
   ASSERT_TRUE(paused_at(window, 1));
-  press(window, GLFW_KEY_SPACE);
+  press(window, " ");
   EXPECT_TRUE(reaches(window, [](const SourceStatus& s) { return s.frame.frame == 4; })) << "plays by the clock";
+  // Scrubbed: the frames follow the mouse while the button is down.
+  const auto line = window.panel().items.at("time line");
+  const int y = static_cast<int>(0.5F * (line[1] + line[3]));
+  const auto at = [&](double part) { return static_cast<int>(line[0] + part * (line[2] - line[0])); };
+  move(window, at(0.98), y);
+  hold(window, kLeft, at(0.98), y);
+  for (const int frame : {3, 2, 1}) {
+    move(window, at(frame == 3 ? 0.65 : frame == 2 ? 0.35 : 0.02), y);
+    ASSERT_TRUE(reaches(window, [&](const SourceStatus& s) { return s.frame.frame == frame; })) << frame;
+  }
+  let_go(window, kLeft, at(0.02), y);
   std::filesystem::remove_all(folder);
 }
 
@@ -285,8 +263,8 @@ TEST_F(Window, DrawsTheFlatWorldOf2D) {
   SimulationPlayer player([&scene] { return Simulation::create(scene); });
   ViewerWindow window(scene, player, options_);
   ASSERT_TRUE(paused_at(window, 1));
-  window.on_scroll(0, -8);
-  drag(window, GLFW_MOUSE_BUTTON_LEFT, 110, 10);
+  wheel(window, -8);
+  drag(window, kLeft, 110, 10);
   rest(window);
   const Image picture = window.capture();
   if (const char* folder = std::getenv("FIRN_TEST_PICTURES"))

@@ -7,10 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "support/temporary_folder.h"
-#include "viewer/reference_picture.h"
-#include "viewer/window_events.h"
-#include "viewer/window_fixture.h"
+#include "viewer/window_modes_fixture.h"
 
 namespace firn {
 namespace {
@@ -22,61 +19,11 @@ using test::Found;
 using test::kHeight;
 using test::kWidth;
 using test::red;
-
-/// A window with a ball that can be changed, at its first frame.
-class WindowModes : public test::Window {
- protected:
-  void SetUp() override {
-    Window::SetUp();
-    if (IsSkipped()) return;
-    options_of_window_ = options_;
-    options_of_window_.record_stem = (folder_.path() / "record").string();
-    open(scene_);
-  }
-  void open(const Scene& scene) {
-    window_.reset();
-    player_ = std::make_unique<SimulationPlayer>(scene);
-    window_ = std::make_unique<ViewerWindow>(scene, *player_, options_of_window_);
-    ASSERT_TRUE(paused_at(*window_, 1));
-    rest(*window_);
-  }
-  ViewControls& controls() { return window_->controls(); }
-  bool has(const std::string& item) { return window_->panel().items.contains(item); }
-  const Image& picture(const std::string& name) {
-    const Image& image = window_->capture();
-    if (const char* folder = std::getenv("FIRN_TEST_PICTURES"))
-      write_png(std::string(folder) + "/" + name + ".png", image);
-    return image;
-  }
-  /// Goes on drawing until the source has taken what it was told.
-  bool settles() {
-    return reaches(*window_, [](const SourceStatus& s) { return !s.busy && s.state != PlayState::playing; });
-  }
-  void step_to(std::int64_t frame) {
-    while (controls().status().last_frame < frame) {
-      const std::int64_t next = controls().status().last_frame + 1;
-      press(*window_, GLFW_KEY_PERIOD);
-      ASSERT_TRUE(reaches(*window_, [&](const SourceStatus& s) { return s.frame.frame == next && !s.busy; }));
-    }
-  }
-  void TearDown() override {
-    if (window_) {
-      EXPECT_EQ(window_->error(), 0U);
-    }
-    window_.reset();
-  }
-
-  TemporaryFolder folder_;
-  ViewerWindow::Options options_of_window_;
-  std::unique_ptr<SimulationPlayer> player_;
-  std::unique_ptr<ViewerWindow> window_;
-};
+using test::WindowModes;
 
 TEST_F(WindowModes, PerspectiveComesAndGoes) {
   const Image before = window_->capture();
-  const test::WindowEvents events("test");
-  events.key('p');
-  rest(*window_);
+  press(*window_, "p");
   rest(*window_);
   EXPECT_TRUE(controls().camera().orthographic());
   const Image& orthographic = picture("mode_orthographic");
@@ -85,7 +32,7 @@ TEST_F(WindowModes, PerspectiveComesAndGoes) {
   // The ball as it is at the target's distance, without what perspective adds.
   const double radius = 0.4 / 4 / std::tan(20 * M_PI / 180) * kHeight / 2;
   EXPECT_NEAR(std::sqrt(ball.count / M_PI), radius, 0.06 * radius);
-  press(*window_, GLFW_KEY_P);
+  press(*window_, "p");
   rest(*window_);
   EXPECT_LT(difference(before, window_->capture()), 1e-3);
 }
@@ -94,7 +41,7 @@ TEST_F(WindowModes, TheGridTakesTheParticlesPlace) {
   step_to(2);
   const Image before = window_->capture();
   const int all = find(before, red).count;
-  press(*window_, GLFW_KEY_G);
+  press(*window_, "g");
   ASSERT_TRUE(reaches(*window_, [this](const SourceStatus& s) { return !s.busy && player_->grid() != nullptr; }));
   window_->draw();
   const Image both = picture("mode_both");
@@ -102,24 +49,24 @@ TEST_F(WindowModes, TheGridTakesTheParticlesPlace) {
   const auto yellow = [](const std::uint8_t* rgb) { return rgb[0] > 150 && rgb[1] > 150 && rgb[2] < 90; };
   EXPECT_GT(find(both, yellow).count, 50) << "arrows of the fastest nodes";
   EXPECT_EQ(find(before, yellow).count, 0);
-  press(*window_, GLFW_KEY_G);
+  press(*window_, "g");
   EXPECT_EQ(find(picture("mode_grid"), red).count, 0);
-  press(*window_, GLFW_KEY_G);
+  press(*window_, "g");
   EXPECT_EQ(find(window_->capture(), red).count, all);
 }
 
 TEST_F(WindowModes, TheClipPlaneHidesAHalf) {
   const Found whole = find(window_->capture(), red);
-  press(*window_, GLFW_KEY_C);
+  press(*window_, "c");
   const Found half = find(picture("mode_clip"), red);
   EXPECT_NEAR(half.count, 0.5 * whole.count, 0.08 * whole.count);
   EXPECT_LT(half.x, whole.x - 10) << "what has a larger x is hidden";
-  press(*window_, GLFW_KEY_TAB);
+  press(*window_, "Tab");
   click(*window_, "tab View");
   click(*window_, "clip flipped");
-  press(*window_, GLFW_KEY_TAB);
+  press(*window_, "Tab");
   EXPECT_GT(find(window_->capture(), red).x, whole.x + 10);
-  press(*window_, GLFW_KEY_C);
+  press(*window_, "c");
   EXPECT_EQ(find(window_->capture(), red).count, whole.count);
 }
 
@@ -131,7 +78,7 @@ TEST_F(WindowModes, SoftLightThrowsShadowsAndDarkensCorners) {
   open(scene);
   ASSERT_FALSE(window_->panel().soft_light) << "not by itself on software OpenGL";
   const Image before = picture("mode_hard");
-  press(*window_, GLFW_KEY_L);
+  press(*window_, "l");
   const Image after = picture("mode_soft");
   // The sun stands to the upper left in front, so that the shadow falls behind the ball, to the right.
   const auto at = controls().camera().seen({{0.55, 0, -0.6}}, static_cast<double>(kWidth) / kHeight);
@@ -145,12 +92,12 @@ TEST_F(WindowModes, SoftLightThrowsShadowsAndDarkensCorners) {
   };
   EXPECT_LT(brightness(after, x, y), 0.85 * brightness(before, x, y));
   EXPECT_NEAR(brightness(after, 620, 440), brightness(before, 620, 440), 6) << "far away the sun still shines";
-  press(*window_, GLFW_KEY_L);
+  press(*window_, "l");
   EXPECT_LT(difference(before, window_->capture()), 1e-3);
 }
 
 TEST_F(WindowModes, ASliderChangesTheMaterialWhileItRuns) {
-  press(*window_, GLFW_KEY_TAB);
+  press(*window_, "Tab");
   window_->draw();
   const double before = scene_.materials[0].parameters.at("youngs_modulus");
   click(*window_, "material jelly: youngs_modulus", 0.9);
@@ -161,7 +108,7 @@ TEST_F(WindowModes, ASliderChangesTheMaterialWhileItRuns) {
   click(*window_, "material jelly: density", 0.95);
   ASSERT_TRUE(reaches(*window_, [](const SourceStatus& s) { return s.waits_for_reset && !s.busy; }));
   EXPECT_GT(controls().scene().materials[0].density, 2 * scene_.materials[0].density);
-  press(*window_, GLFW_KEY_R);
+  press(*window_, "r");
   ASSERT_TRUE(paused_at(*window_, 1));
   EXPECT_FALSE(controls().status().waits_for_reset);
 }
@@ -173,23 +120,28 @@ TEST_F(WindowModes, AMenuGivesABodyAnotherSubstance) {
   click(*window_, "honey");
   EXPECT_EQ(controls().scene().materials[0].preset, "honey");
   ASSERT_TRUE(reaches(*window_, [](const SourceStatus& s) { return s.waits_for_reset && !s.busy; }));
-  press(*window_, GLFW_KEY_R);
+  press(*window_, "r");
   ASSERT_TRUE(paused_at(*window_, 1));
   rest(*window_);
   EXPECT_EQ(find(window_->capture(), red).count, 0) << "honey is not red";
 }
 
 TEST_F(WindowModes, SavesWhatIsOnTheScreen) {
-  controls().source().edit([](Scene& scene) { scene.materials[0].parameters["youngs_modulus"] = 54321; });
-  drag(*window_, GLFW_MOUSE_BUTTON_LEFT, 80, 30);
-  press(*window_, GLFW_KEY_S);
+  drag(*window_, kLeft, 80, 30);
+  press(*window_, "Tab");
+  window_->draw();
+  enter(*window_, "material jelly: youngs_modulus", "54321");
+  press(*window_, "Tab");
+  ASSERT_TRUE(settles());
+  press(*window_, "s");
   window_->draw();
   ASSERT_TRUE(has("save"));
-  // The field is selected, so that the first letter takes the place of what it held.
+  // The field is selected, so that the first letter takes the place of what it held; and no letter is a hot key.
   const std::string path = (folder_.path() / "mine.toml").string();
   window_->draw();
-  for (const char c : path) window_->on_character(static_cast<unsigned char>(c));
-  window_->draw();
+  type(*window_, path);
+  EXPECT_EQ(controls().status().frame.frame, 1);
+  EXPECT_FALSE(controls().clip.on);
   click(*window_, "save");
   window_->draw();
   ASSERT_TRUE(std::filesystem::exists(path)) << window_->notes().message;
@@ -202,7 +154,7 @@ TEST_F(WindowModes, SavesWhatIsOnTheScreen) {
 }
 
 TEST_F(WindowModes, AClickPicksAParticleAndTellsItsNumbers) {
-  press(*window_, GLFW_KEY_TAB);
+  press(*window_, "Tab");
   // The ball is in the middle of the picture, its left side beside the panels.
   click(*window_, 285, 245);
   ASSERT_EQ(controls().picked().kind, Picked::Kind::particle);
@@ -225,7 +177,7 @@ TEST_F(WindowModes, AClickPicksAParticleAndTellsItsNumbers) {
 
 TEST_F(WindowModes, PlotsShowTheEnergies) {
   step_to(4);
-  press(*window_, GLFW_KEY_TAB);
+  press(*window_, "Tab");
   click(*window_, "tab Plots");
   window_->draw();
   for (const PlottedNumber& plot : plotted_numbers()) EXPECT_TRUE(has(std::string("plot ") + plot.name)) << plot.name;
@@ -238,19 +190,15 @@ TEST_F(WindowModes, TheMousePullsMaterial) {
   scene.gravity = {};
   scene.bodies[0].velocity[1] = {};
   open(scene);
-  controls().hand_radius = 0.9;
+  set_hand("0.9");
   const Found before = find(window_->capture(), red);
-  window_->on_cursor(320, 240);
-  window_->draw();
-  window_->on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_PRESS, GLFW_MOD_CONTROL);
-  window_->draw();
+  move(*window_, 320, 240);
+  hold(*window_, kLeft, 320, 240, GLFW_MOD_CONTROL);
   ASSERT_TRUE(controls().grabbed().has_value());
-  window_->on_cursor(400, 240);
-  window_->draw();
+  move(*window_, 400, 240);
   picture("mode_grab");
   step_to(4);
-  window_->on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_RELEASE, 0);
-  window_->draw();
+  let_go(*window_, kLeft, 400, 240);
   EXPECT_FALSE(controls().grabbed().has_value());
   rest(*window_);
   const Found after = find(window_->capture(), red);
@@ -260,13 +208,16 @@ TEST_F(WindowModes, TheMousePullsMaterial) {
 }
 
 TEST_F(WindowModes, DropsABodyAndPlacesACollider) {
-  controls().drop_preset = "water";
-  controls().hand_radius = 0.2;
-  window_->on_cursor(500, 200);
-  press(*window_, GLFW_KEY_B);
+  click(*window_, "Mouse");
+  click(*window_, "Substance to drop");
+  click(*window_, "water");
+  ASSERT_EQ(controls().drop_preset, "water");
+  set_hand("0.2");
+  move(*window_, 500, 200);
+  press(*window_, "b");
   ASSERT_TRUE(reaches(*window_, [](const SourceStatus& s) { return s.frame.particles > 4100 && !s.busy; }));
-  window_->on_cursor(500, 330);
-  press(*window_, GLFW_KEY_O);
+  move(*window_, 500, 330);
+  press(*window_, "o");
   ASSERT_TRUE(reaches(
       *window_, [this](const SourceStatus& s) { return !s.busy && player_->running_scene()->colliders.size() == 2; }));
   rest(*window_);
@@ -274,51 +225,48 @@ TEST_F(WindowModes, DropsABodyAndPlacesACollider) {
   EXPECT_EQ(controls().scene().emitters.size(), 1U);
   EXPECT_EQ(controls().status().note, "");
   step_to(3);
-  window_->on_cursor(40, 400);
-  window_->draw();
-  window_->on_cursor(500, 330);
-  controls().pick_at({2 * 500.5 / kWidth - 1, 1 - 2 * 330.5 / kHeight, static_cast<double>(kWidth) / kHeight});
+  click(*window_, 500, 330);
   EXPECT_EQ(controls().picked().kind, Picked::Kind::collider);
   EXPECT_EQ(controls().picked().collider, 1);
 }
 
 TEST_F(WindowModes, WritesPicturesAndFilmsOfWhatIsSeen) {
-  press(*window_, GLFW_KEY_I);
+  press(*window_, "i");
   window_->draw();
   const auto png = read_png(folder_ / "record_001.png");
   ASSERT_TRUE(png.has_value()) << window_->notes().message;
   EXPECT_EQ(png->width, kWidth);
   EXPECT_LT(difference(*png, window_->capture()), 0.12) << "but for the message";
   if (!program_exists("ffmpeg")) GTEST_SKIP() << "NOTICE: ffmpeg is not installed; films are not tested";
-  press(*window_, GLFW_KEY_V);
+  press(*window_, "v");
   window_->draw();
   EXPECT_TRUE(window_->notes().recording);
   step_to(4);
   EXPECT_EQ(window_->notes().pictures, 3);
-  press(*window_, GLFW_KEY_V);
+  press(*window_, "v");
   window_->draw();
   EXPECT_FALSE(window_->notes().recording);
   EXPECT_GT(std::filesystem::file_size(folder_ / "record_001.mp4"), 1000U);
-  press(*window_, GLFW_KEY_V);
+  press(*window_, "v");
   window_->draw();
-  press(*window_, GLFW_KEY_V);
+  press(*window_, "v");
   window_->draw();
   EXPECT_FALSE(std::filesystem::exists(folder_ / "record_002.mp4")) << "a film without a picture leaves nothing";
 }
 
 TEST_F(WindowModes, KeysAreListedAndPanelsHidden) {
-  press(*window_, GLFW_KEY_SLASH, GLFW_MOD_SHIFT);
+  press(*window_, "/", GLFW_MOD_SHIFT);
   window_->draw();
   EXPECT_TRUE(has("help space"));
   picture("mode_help");
-  press(*window_, GLFW_KEY_ESCAPE);
+  press(*window_, "Escape");
   EXPECT_FALSE(has("help space"));
   EXPECT_TRUE(window_->has_scene());
-  press(*window_, GLFW_KEY_H);
+  press(*window_, "h");
   window_->draw();
   EXPECT_FALSE(has("play"));
   const Image bare = window_->capture();
-  press(*window_, GLFW_KEY_H);
+  press(*window_, "h");
   window_->draw();
   EXPECT_TRUE(has("play"));
   const Image full = window_->capture();
@@ -326,7 +274,7 @@ TEST_F(WindowModes, KeysAreListedAndPanelsHidden) {
 }
 
 TEST_F(WindowModes, RunsToTheFrameThatIsTyped) {
-  window_->panel().run_to = 3;
+  enter(*window_, "run to frame", "3");
   click(*window_, "run to");
   ASSERT_TRUE(
       reaches(*window_, [](const SourceStatus& s) { return s.frame.frame == 3 && s.state == PlayState::paused; }));
@@ -344,6 +292,7 @@ TEST_F(WindowModes, TheStartPageOpensASceneByDoubleClick) {
   std::filesystem::path opened;
   options.open = [&](const std::filesystem::path& path) -> Show {
     opened = path;
+    ViewerWindow::require_display();  // as the program does before it builds a scene; the window must survive it
     if (path.stem() == "concrete") throw Error(ErrorKind::usage, "no concrete today");
     return {scene_, std::make_unique<SimulationPlayer>(scene_), "test"};
   };
@@ -370,12 +319,17 @@ TEST_F(WindowModes, TheStartPageOpensASceneByDoubleClick) {
   twice("concrete");
   EXPECT_FALSE(window_->has_scene()) << "what is wrong is told on the page";
   EXPECT_EQ(opened.stem(), "concrete");
-  twice("clay");
+  // Both clicks of another one come between two pictures, as where pictures take long.
+  const auto& clay = window_->panel().items.at("clay");
+  const int x = static_cast<int>(0.5F * (clay[0] + clay[2])), y = static_cast<int>(0.5F * (clay[1] + clay[3]));
+  move(*window_, x, y);
+  for (const bool down : {true, false, true, false}) test::WindowEvents().button(kLeft, down, x, y);
+  for (int i = 0; i < 4 && !window_->has_scene(); ++i) window_->draw();
   EXPECT_EQ(opened.stem(), "clay");
   ASSERT_TRUE(window_->has_scene());
   ASSERT_TRUE(paused_at(*window_, 1));
   EXPECT_GT(find(window_->capture(), red).count, 1000);
-  press(*window_, GLFW_KEY_ESCAPE);
+  press(*window_, "Escape");
   window_->draw();
   EXPECT_FALSE(window_->has_scene()) << "and back";
   window_->draw();

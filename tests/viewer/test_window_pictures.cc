@@ -12,8 +12,7 @@ using namespace std::chrono_literals;
 using test::kBall;
 using test::Window;
 
-/// The look as a whole, against pictures that were looked at. The panel, which tells times, is left out. To renew them:
-/// FIRN_TEST_PICTURES=tests/viewer/pictures, and look.
+/// The look as a whole.
 TEST_F(Window, LooksAsItDid) {
   const std::string colliders =
       "[[collider]]\nshape = \"box\"\nsize = [0.5, 0.5, 0.5]\nrotation = [0, 30, 0]\nposition = [1, 0.5, 0]\n"
@@ -22,75 +21,72 @@ TEST_F(Window, LooksAsItDid) {
   SimulationPlayer player([&scene] { return Simulation::create(scene); });
   ViewerWindow window(scene, player, options_);
   ASSERT_TRUE(paused_at(window, 1));
-  Image previous;
-  for (const std::string name : {"material", "von_mises_stress"}) {
-    if (name != "material") {
-      press(window, GLFW_KEY_PERIOD);
-      press(window, GLFW_KEY_PERIOD);
-      ASSERT_TRUE(paused_at(window, 3));
-      const auto choices = window.controls().choices();
-      ASSERT_NE(std::find(choices.begin(), choices.end(), name), choices.end());
-      window.controls().color_by = name;
-      player.step();
-      ASSERT_TRUE(paused_at(window, 4));
-    }
-    Image picture = window.capture();
-    for (int y = 0; y < 300; ++y) {
-      std::fill(picture.pixel(0, y), picture.pixel(y < 24 ? 640 : 248, y), std::uint8_t(0));
-    }
-    const Image small = test::reduced(picture);
-    if (const char* folder = std::getenv("FIRN_TEST_PICTURES"))
-      write_png(std::string(folder) + "/" + name + ".png", small);
-    const Image reference = test::reference_picture(name);
-    EXPECT_LT(test::share_of_different(small, reference, 24), 0.02) << name;
-    if (!previous.rgb.empty()) {
-      EXPECT_GT(test::share_of_different(previous, reference, 24), 0.02) << "negative control";
-    }
-    previous = small;
+  const Image by_material = window.capture();
+  for (const int frame : {2, 3}) {
+    press(window, ".");
+    ASSERT_TRUE(paused_at(window, frame));
   }
+  click(window, "colour by");
+  click(window, "colour by von mises stress");
+  ASSERT_EQ(window.controls().color_by, "von_mises_stress");
+  press(window, ".");
+  ASSERT_TRUE(paused_at(window, 4));
+  const Image by_stress = window.capture();
+  test::expect_as_reference("material", by_material, by_stress);
+  test::expect_as_reference("von_mises_stress", by_stress, by_material);
 }
 
-/// What a million particles cost the processor in one picture: the copy of a snapshot, and the calls. Software OpenGL
-/// draws on the processor inside some of these calls; so they are also counted with one particle in as many calls.
+/// Shows two frames in turn, so that neither is what the processor has just read.
+class TwoFrames final : public FrameSource {
+ public:
+  TwoFrames(std::size_t particles, bool doubles) {
+    for (auto& frame : frames_) frame = make(particles, doubles);
+    next();
+  }
+  void play() override {}
+  void pause() override {}
+  void step() override {}
+  void reset() override {}
+  void run_to(std::int64_t) override {}
+  void seek(std::int64_t) override {}
+  void next() {
+    const std::lock_guard lock(mutex_);
+    snapshot_ = frames_[status_.published++ % 2];
+    status_.state = PlayState::paused;
+  }
+
+ private:
+  static std::shared_ptr<const Snapshot> make(std::size_t particles, bool doubles) {
+    auto snapshot = std::make_shared<Snapshot>();
+    snapshot->particle_spacing = 0.01;
+    snapshot->materials = {{"stuff", "snow", "snow", 0, particles}};
+    std::vector<float> x(3 * particles);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>((i * 7919) % 1009) * 1e-3F;
+    for (const auto& [name, unit] : {std::pair("position", "m"), {"velocity", "m/s"}}) {
+      snapshot->columns.push_back({name, unit, "", 3, x});
+      if (doubles) snapshot->columns.back().values = std::vector<double>(x.begin(), x.end());
+    }
+    return snapshot;
+  }
+  std::shared_ptr<const Snapshot> frames_[2];
+};
+
+/// What a million particles cost the processor in one picture: the copy of a snapshot, and the calls, in processor
+/// time. Software OpenGL draws on the processor inside some of these calls; so they are counted with one particle in as
+/// many calls. Of all tries the least counts, which a busy machine makes longer least.
 TEST_F(Window, CpuSideOfAMillionParticles) {
   constexpr std::size_t kParticles = 1000000;
-  class Source final : public FrameSource {
-   public:
-    Source(std::size_t count, bool doubles) : count_(count), doubles_(doubles) { next(); }
-    void play() override {}
-    void pause() override {}
-    void step() override {}
-    void reset() override {}
-    void run_to(std::int64_t) override {}
-    void seek(std::int64_t) override {}
-    void next() {
-      auto snapshot = std::make_shared<Snapshot>();
-      snapshot->particle_spacing = 0.01;
-      snapshot->materials = {{"stuff", "snow", "snow", 0, count_}};
-      std::vector<float> x(3 * count_);
-      for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>((i * 7919) % 1009) * 1e-3F;
-      for (const auto& [name, unit] : {std::pair("position", "m"), {"velocity", "m/s"}}) {
-        snapshot->columns.push_back({name, unit, "", 3, x});
-        if (doubles_) snapshot->columns.back().values = std::vector<double>(x.begin(), x.end());
-      }
-      const std::lock_guard lock(mutex_);
-      snapshot_ = snapshot;
-      ++status_.published;
-      status_.state = PlayState::paused;
-    }
-
-   private:
-    std::size_t count_;
-    bool doubles_;
-  };
+  constexpr double kTarget = 8e-3;  // s
   const auto measure = [&](std::size_t count, const char* column, bool doubles) {
-    Source source(count, doubles);
+    TwoFrames source(count, doubles);
     ViewerWindow::Options options = options_;
     options.width = options.height = 64;
     ViewerWindow window(scene_, source, options);
     window.controls().color_by = column;
+    // The particles are copied and, with the grid alone, not drawn.
+    if (count > 1) window.controls().set_shown(ViewControls::Shown::grid);
     ViewerWindow::Times least = {1e9, 1e9};
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 40 && (i < 6 || least.upload + least.draw > kTarget); ++i) {
       source.next();
       window.draw();
       least.upload = std::min(least.upload, window.times().upload);
@@ -100,13 +96,16 @@ TEST_F(Window, CpuSideOfAMillionParticles) {
     EXPECT_EQ(window.error(), 0U);
     return least;
   };
-  const auto look = measure(kParticles, "", false), column = measure(kParticles, "velocity", false);
-  const auto doubles = measure(kParticles, "velocity", true), calls = measure(1, "velocity", false);
-  test::record("upload_ms_by_material", 1e3 * look.upload);
-  test::record("upload_ms_by_velocity", 1e3 * column.upload);
-  test::record("upload_ms_by_velocity_in_double_precision", 1e3 * doubles.upload);
-  test::record("calls_ms", 1e3 * calls.draw);
-  test::record("calls_ms_with_software_vertices", 1e3 * column.draw);
+  const double calls = measure(1, "velocity", false).draw;
+  test::record("calls_ms", 1e3 * calls);
+  const auto check = [&](const char* name, const char* column, bool doubles) {
+    const double upload = measure(kParticles, column, doubles).upload;
+    test::record(name, 1e3 * upload);
+    EXPECT_LT(upload + calls, kTarget) << name;
+  };
+  check("upload_ms_by_material", "", false);
+  check("upload_ms_by_velocity", "velocity", false);
+  check("upload_ms_by_velocity_in_double_precision", "velocity", true);
 }
 
 /// Makes docs/images/viewer.png and the pictures of docs/images/viewer (as PNG; tools of one's choice turn them into
@@ -126,7 +125,7 @@ TEST_F(Window, DISABLED_PicturesOfTheModes) {
   player.run_to(20);
   ASSERT_TRUE(player.wait([](const SourceStatus& s) { return s.frame.frame == 20 && !s.busy; }, 600s));
   window.draw();
-  drag(window, GLFW_MOUSE_BUTTON_LEFT, 60, 20);
+  drag(window, kLeft, 60, 20);
   save("viewer");
   save("scene");
   window.panel().tab = "Plots";
@@ -137,20 +136,25 @@ TEST_F(Window, DISABLED_PicturesOfTheModes) {
   window.controls().color_by = "";
   player.step();
   ASSERT_TRUE(player.wait([](const SourceStatus& s) { return s.frame.frame == 21 && !s.busy; }, 600s));
-  press(window, GLFW_KEY_P);
+  press(window, "p");
   save("orthographic");
-  press(window, GLFW_KEY_P);
-  press(window, GLFW_KEY_L);
+  press(window, "p");
+  press(window, "l");
   save("soft_light");
-  press(window, GLFW_KEY_L);
-  press(window, GLFW_KEY_G);
-  press(window, GLFW_KEY_G);
+  press(window, "u");
+  ASSERT_TRUE(reaches(
+      window, [&](const SourceStatus&) { return window.notes().surface.wanted && !window.notes().surface.busy; }));
+  save("surface");
+  press(window, "u");
+  press(window, "l");
+  press(window, "g");
+  press(window, "g");
   ASSERT_TRUE(reaches(window, [&](const SourceStatus& s) { return !s.busy && player.grid() != nullptr; }));
   save("grid");
-  press(window, GLFW_KEY_G);
+  press(window, "g");
   window.controls().color_by = "von_mises_stress";
   window.controls().clip.axis = 2;
-  press(window, GLFW_KEY_C);
+  press(window, "c");
   player.step();
   ASSERT_TRUE(player.wait([](const SourceStatus& s) { return s.frame.frame == 22 && !s.busy; }, 600s));
   save("clip");
@@ -164,20 +168,18 @@ TEST_F(Window, DISABLED_PicturesOfTheMouse) {
   ASSERT_TRUE(paused_at(window, 1));
   window.controls().hand_radius = 0.2;
   window.controls().drop_preset = "snow";
-  window.on_cursor(750, 200);
-  press(window, GLFW_KEY_B);
-  window.on_cursor(700, 420);
-  press(window, GLFW_KEY_O);
-  window.on_cursor(480, 290);
-  window.draw();
-  window.on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_PRESS, GLFW_MOD_CONTROL);
-  window.draw();
-  window.on_cursor(640, 200);
+  move(window, 750, 200);
+  press(window, "b");
+  move(window, 700, 420);
+  press(window, "o");
+  move(window, 480, 290);
+  hold(window, kLeft, 480, 290, GLFW_MOD_CONTROL);
+  move(window, 640, 200);
   player.run_to(5);
   ASSERT_TRUE(reaches(window, [](const SourceStatus& s) { return s.frame.frame == 5 && !s.busy; }));
   rest(window);
   write_png(folder + "grab.png", window.capture());
-  window.on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_RELEASE, 0);
+  let_go(window, kLeft, 640, 200);
 }
 
 TEST_F(Window, DISABLED_PictureOfTheStartPage) {

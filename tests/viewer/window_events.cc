@@ -1,15 +1,16 @@
 #include "viewer/window_events.h"
 
+#include <X11/XKBlib.h>
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 
 namespace firn::test {
 namespace {
 
-/// The window of this title at or below another one; 0 for none.
+/// The window of this title, or with any, at or below another one; 0 for none.
 ::Window find_window(Display* display, ::Window at, const std::string& title) {
   char* name = nullptr;
-  const bool found = XFetchName(display, at, &name) != 0 && name == title;
+  const bool found = XFetchName(display, at, &name) != 0 && (title.empty() || name == title);
   if (name != nullptr) XFree(name);
   if (found) return at;
   ::Window root = 0, parent = 0, *children = nullptr, result = 0;
@@ -37,7 +38,15 @@ Event event_for(Display* display, ::Window window, int type, int x, int y) {
 
 void send(Display* display, ::Window window, long mask, XEvent event) {
   XSendEvent(display, window, True, mask, &event);
+  // The server writes to all of its clients before it reads on: with the answer to a second question, the event has
+  // been written, too.
   XSync(display, False);
+  XSync(display, False);
+}
+
+unsigned state_of(int modifiers) {
+  constexpr int kShift = 1, kControl = 2;  // GLFW's
+  return ((modifiers & kShift) != 0 ? ShiftMask : 0U) | ((modifiers & kControl) != 0 ? ControlMask : 0U);
 }
 
 }  // namespace
@@ -52,14 +61,17 @@ WindowEvents::~WindowEvents() {
   if (display_ != nullptr) XCloseDisplay(static_cast<Display*>(display_));
 }
 
-void WindowEvents::key(char key) const {
+void WindowEvents::key(const std::string& name, bool down, int modifiers) const {
   auto* display = static_cast<Display*>(display_);
-  for (const int type : {KeyPress, KeyRelease}) {
-    XEvent event = {};
-    event.xkey = event_for<XKeyEvent>(display, window_, type, 1, 1);
-    event.xkey.keycode = XKeysymToKeycode(display, static_cast<KeySym>(key));  // Latin-1 is its own symbol
-    send(display, window_, type == KeyPress ? KeyPressMask : KeyReleaseMask, event);
-  }
+  // Characters of Latin 1 are their own symbols.
+  const auto symbol = name.size() == 1 ? static_cast<KeySym>(name[0]) : XStringToKeysym(name.c_str());
+  const KeyCode code = XKeysymToKeycode(display, symbol);
+  const bool shifted = XkbKeycodeToKeysym(display, code, 0, 0) != symbol;
+  XEvent event = {};
+  event.xkey = event_for<XKeyEvent>(display, window_, down ? KeyPress : KeyRelease, 1, 1);
+  event.xkey.keycode = code;
+  event.xkey.state = state_of(modifiers) | (shifted ? ShiftMask : 0U);
+  send(display, window_, down ? KeyPressMask : KeyReleaseMask, event);
 }
 
 void WindowEvents::move(int x, int y) const {
@@ -69,11 +81,12 @@ void WindowEvents::move(int x, int y) const {
   send(display, window_, PointerMotionMask, event);
 }
 
-void WindowEvents::button(unsigned button, bool down, int x, int y) const {
+void WindowEvents::button(unsigned button, bool down, int x, int y, int modifiers) const {
   auto* display = static_cast<Display*>(display_);
   XEvent event = {};
   event.xbutton = event_for<XButtonEvent>(display, window_, down ? ButtonPress : ButtonRelease, x, y);
   event.xbutton.button = button;
+  event.xbutton.state = state_of(modifiers);
   send(display, window_, down ? ButtonPressMask : ButtonReleaseMask, event);
 }
 

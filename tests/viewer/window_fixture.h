@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "viewer/virtual_display.h"
+#include "viewer/window_events.h"
 
 namespace firn::test {
 
@@ -115,41 +116,88 @@ class Window : public testing::Test {
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     window.draw();
   }
-  void press(ViewerWindow& window, int key, int mods = 0) {
-    window.on_key(key, 0, GLFW_PRESS, mods);
-    window.draw();
-    window.on_key(key, 0, GLFW_RELEASE, mods);
-    window.draw();
-  }
-  void drag(ViewerWindow& window, int button, double dx, double dy) {
-    const double x = 400, y = 300;
-    window.on_cursor(x, y);
-    window.draw();
-    window.on_button(button, GLFW_PRESS, 0);
-    window.draw();
-    for (int i = 1; i <= 4; ++i) {
-      window.on_cursor(x + dx * i / 4, y + dy * i / 4);
+
+  // What a user does: events of the X server, each one followed by a picture.
+
+  /// A key by its character or its name in X.
+  void press(ViewerWindow& window, const std::string& key, int modifiers = 0) {
+    const WindowEvents events;
+    press_modifiers(true, modifiers);
+    for (const bool down : {true, false}) {
+      events.key(key, down, modifiers);
       window.draw();
     }
-    window.on_button(button, GLFW_RELEASE, 0);
+    press_modifiers(false, modifiers);
+  }
+  void press_modifiers(bool down, int modifiers) {
+    if ((modifiers & GLFW_MOD_SHIFT) != 0) WindowEvents().key("Shift_L", down);
+    if ((modifiers & GLFW_MOD_CONTROL) != 0) WindowEvents().key("Control_L", down);
+  }
+  void type(ViewerWindow& window, const std::string& text) {
+    const WindowEvents events;
+    for (const char c : text) {
+      events.key(std::string(1, c), true);
+      events.key(std::string(1, c), false);
+    }
+    window.draw();
+  }
+  void move(ViewerWindow& window, int x, int y) {
+    WindowEvents().move(x, y);
+    window.draw();
+  }
+  /// Notches of the wheel, positive towards the scene, in the middle of the picture.
+  void wheel(ViewerWindow& window, int notches) {
+    const WindowEvents events;
+    events.move(kWidth / 2, kHeight / 2);
+    window.draw();
+    for (int i = 0; i < std::abs(notches); ++i) {
+      for (const bool down : {true, false}) events.button(notches > 0 ? 4 : 5, down, kWidth / 2, kHeight / 2);
+    }
+    window.draw();
+  }
+  /// @param button as WindowEvents
+  void drag(ViewerWindow& window, unsigned button, int dx, int dy) {
+    const int x = 400, y = 300;
+    move(window, x, y);
+    hold(window, button, x, y);
+    for (int i = 1; i <= 4; ++i) move(window, x + dx * i / 4, y + dy * i / 4);
+    let_go(window, button, x + dx, y + dy);
+  }
+  void hold(ViewerWindow& window, unsigned button, int x, int y, int modifiers = 0) {
+    WindowEvents().button(button, true, x, y, modifiers);
+    window.draw();
+  }
+  void let_go(ViewerWindow& window, unsigned button, int x, int y) {
+    WindowEvents().button(button, false, x, y);
     window.draw();
   }
   /// A button, menu or slider by its label, at a share of its width.
-  void click(ViewerWindow& window, const std::string& item, double part = 0.5) {
+  void click(ViewerWindow& window, const std::string& item, double part = 0.5, int modifiers = 0) {
     const auto found = window.panel().items.find(item);
     ASSERT_NE(found, window.panel().items.end()) << item << " is not to be seen";
     const auto& rect = found->second;
-    click(window, rect[0] + part * (rect[2] - rect[0]), 0.5 * (rect[1] + rect[3]));
+    click(window, static_cast<int>(rect[0] + part * (rect[2] - rect[0])), static_cast<int>(0.5 * (rect[1] + rect[3])),
+          modifiers);
   }
-  void click(ViewerWindow& window, double x, double y) {
-    window.on_cursor(x, y);
-    window.draw();
-    window.on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_PRESS, 0);
-    window.draw();
-    window.on_button(GLFW_MOUSE_BUTTON_LEFT, GLFW_RELEASE, 0);
+  void click(ViewerWindow& window, int x, int y, int modifiers = 0) {
+    move(window, x, y);
+    press_modifiers(true, modifiers);
+    hold(window, kLeft, x, y, modifiers);
+    let_go(window, kLeft, x, y);
+    press_modifiers(false, modifiers);
     // What a click opens is laid out in the pictures after it.
-    for (int i = 0; i < 4; ++i) window.draw();
+    for (int i = 0; i < 3; ++i) window.draw();
   }
+  /// A number or a text in a field, which a click with Ctrl makes of a slider, too.
+  void enter(ViewerWindow& window, const std::string& item, const std::string& text, double part = 0.5) {
+    click(window, item, part, GLFW_MOD_CONTROL);
+    press(window, "a", GLFW_MOD_CONTROL);
+    type(window, text);
+    press(window, "Return");
+    window.draw();
+  }
+
+  static constexpr unsigned kLeft = 1, kRight = 3;
 
   VirtualDisplay display_;
   const Scene scene_ = parse_scene(kBall, "ball.toml");

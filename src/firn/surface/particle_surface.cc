@@ -57,6 +57,13 @@ ParticleSurface particle_surface(const SurfaceParticles& particles, const Surfac
   return surface;
 }
 
+std::vector<Vec3f> carried_to(const SurfaceParticles& particles, const SurfaceOptions& options,
+                              std::span<const Vec3f> values, std::span<const Vec3d> places) {
+  check(particles, options);
+  const double reach = reach_of(particles, options);
+  return blended(particles.positions, CellList(particles.positions, reach), reach, values, places);
+}
+
 SurfaceVolumes surface_volumes(const SurfaceParticles& particles, const ParticleSurface& surface,
                                const SurfaceOptions& options) {
   check(particles, options);

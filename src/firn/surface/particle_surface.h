@@ -15,6 +15,8 @@ struct SurfaceOptions {
   double voxel = 0.5;     ///< of the grid that it is found on
   int smoothing = 8;      ///< passes of smooth()
   double adaptivity = 0;  ///< 0 (polygons as small as voxels) to 1 (large where it is flat)
+
+  bool operator==(const SurfaceOptions&) const = default;
 };
 
 /// Particles and what the surface shall carry.
@@ -36,6 +38,11 @@ struct ParticleSurface {
 /// without particles it is empty. The same bits on any number of threads.
 /// Throws Error (usage) for options out of range (with it) and positions that are not finite.
 ParticleSurface particle_surface(const SurfaceParticles& particles, const SurfaceOptions& options);
+
+/// What particle_surface() carries to places on the surface: the means of `values`, one for each particle. A place
+/// without particles near has zero.
+std::vector<Vec3f> carried_to(const SurfaceParticles& particles, const SurfaceOptions& options,
+                              std::span<const Vec3f> values, std::span<const Vec3d> places);
 
 /// The same surface as a level set "surface" and, if particles have them, velocities "v" on the same leaves.
 struct SurfaceVolumes {

@@ -61,6 +61,11 @@ class FrameSource {
   /// Whether what one sees follows that clock.
   virtual bool follows_clock() const { return false; }
 
+  /// While frames are paced, none is begun before the latest was taken: `published` of the status that it came with.
+  /// For films, whose pictures may take longer than frames.
+  virtual void pace(bool) {}
+  virtual void taken(std::uint64_t) {}
+
   /// The scene as it is now, with what was changed in the window; null if this source cannot be changed.
   std::shared_ptr<const Scene> scene() const;
   /// The scene whose colliders and sources the frames have; null if it is the one that the source was made for. Another

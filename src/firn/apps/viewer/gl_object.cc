@@ -63,6 +63,15 @@ GlProgram::~GlProgram() {
   glDeleteProgram(id_);
 }
 
+void upload_row(GLuint texture, int width, GLenum format, GLenum type, const void* texels, GLint internal) {
+  glBindTexture(GL_TEXTURE_2D, texture);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, internal, width, 1, 0, format, type, texels);
+}
+
 const char* const kDaylightGlsl = R"(
 uniform vec3 sun_direction, up, sun_light, sky_light, ground_light;
 uniform int shadows;

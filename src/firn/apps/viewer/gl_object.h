@@ -52,6 +52,9 @@ using GlVertexArray = GlName<&epoxy_glGenVertexArrays, &epoxy_glDeleteVertexArra
 using GlTexture = GlName<&epoxy_glGenTextures, &epoxy_glDeleteTextures>;
 using GlFramebuffer = GlName<&epoxy_glGenFramebuffers, &epoxy_glDeleteFramebuffers>;
 
+/// A texture of one row, as colour maps and palettes are.
+void upload_row(GLuint texture, int width, GLenum format, GLenum type, const void* texels, GLint internal);
+
 /// The sun's shadows: what is nearest to it, and where a point of view space is in that picture.
 struct Shadows {
   GLuint map = 0;          ///< texture of depths; 0: there are none

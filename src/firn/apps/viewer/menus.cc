@@ -56,9 +56,12 @@ bool draw_view_menu(ViewControls& controls, PanelState& state) {
   if (item(state, "Side panel", "Tab", state.side)) state.side = !state.side;
   if (item(state, "Hide all panels", "h")) state.hidden = true;
   ImGui::Separator();
-  if (item(state, "Particles", "g", controls.shown() == Shown::particles)) controls.set_shown(Shown::particles);
-  if (item(state, "Particles and grid", "g", controls.shown() == Shown::both)) controls.set_shown(Shown::both);
-  if (item(state, "Grid", "g", controls.shown() == Shown::grid)) controls.set_shown(Shown::grid);
+  if (item(state, "Particles", "u", !controls.as_surface())) controls.set_as_surface(false);
+  if (item(state, "Surface", "u", controls.as_surface(), controls.can_have_surface())) controls.set_as_surface(true);
+  ImGui::Separator();
+  if (item(state, "No grid", "g", controls.shown() == Shown::material)) controls.set_shown(Shown::material);
+  if (item(state, "With the grid", "g", controls.shown() == Shown::both)) controls.set_shown(Shown::both);
+  if (item(state, "Grid alone", "g", controls.shown() == Shown::grid)) controls.set_shown(Shown::grid);
   ImGui::Separator();
   if (item(state, "Perspective", "p", !controls.camera().orthographic())) controls.key('p');
   if (item(state, "Clip plane", "c", controls.clip.on)) controls.key('c');

@@ -62,7 +62,24 @@ void draw_run_to(ViewControls& controls, PanelState& state) {
   mark(state, "run to");
 }
 
-void draw_numbers(const ViewControls& controls, const PanelNotes& notes) {
+/// Of which frame the surface in the picture is, and what is being done about it.
+void draw_surface_note(const SurfaceNotes& surface, std::int64_t frame, PanelState& state) {
+  if (!surface.wanted) return;
+  const ImVec4 amber = {1, 0.8F, 0.3F, 1};
+  std::string text;
+  if (surface.frame == 0) {
+    text = surface.busy ? "surface is being made" : "no surface";
+  } else if (surface.frame != frame) {
+    text = fmt::format("surface of frame {}{}", surface.frame, surface.busy ? " ..." : "");
+  } else {
+    text = surface.busy ? "surface is being changed" : fmt::format("surface: {} triangles", surface.triangles);
+  }
+  const bool lags = surface.frame != frame;
+  ImGui::TextColored(lags ? amber : ImGui::GetStyleColorVec4(ImGuiCol_Text), "%s", text.c_str());
+  mark(state, lags ? "surface lags" : "surface is there");
+}
+
+void draw_numbers(const ViewControls& controls, const PanelNotes& notes, PanelState& state) {
   const SourceStatus& status = controls.status();
   const FrameReport& frame = status.frame;
   line(fmt::format("{}{}", name_of(status.state), status.busy ? " ..." : ""));
@@ -74,6 +91,7 @@ void draw_numbers(const ViewControls& controls, const PanelNotes& notes) {
     line(fmt::format("{:.2f} s, {:.3g} updates/s", frame.wall_seconds, rate));
   }
   line(fmt::format("{} particles, {:.1f} ms", frame.particles, notes.frame_milliseconds));
+  draw_surface_note(notes.surface, frame.frame, state);
   if (frame.parked > 0) line(fmt::format("{} parked", frame.parked));
   const ImVec4 amber = {1, 0.8F, 0.3F, 1};
   if (notes.thinned) ImGui::TextColored(amber, "moving: %s drawn", std::to_string(notes.drawn).c_str());
@@ -88,15 +106,16 @@ void draw_main(ViewControls& controls, const PanelNotes& notes, PanelState& stat
   draw_buttons(controls, state);
   draw_time_line(controls, state);
   draw_run_to(controls, state);
-  draw_numbers(controls, notes);
+  draw_numbers(controls, notes, state);
   recolor = draw_colors(controls, notes, state) || recolor;
   ImGui::End();
 }
 
 void draw_message(const SourceStatus& status, const PanelNotes& notes) {
-  const std::string text = !status.message.empty() ? status.message
-                           : !status.note.empty()  ? status.note
-                                                   : notes.message;
+  const std::string text = !status.message.empty()          ? status.message
+                           : !status.note.empty()           ? status.note
+                           : !notes.surface.message.empty() ? notes.surface.message
+                                                            : notes.message;
   if (text.empty()) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({10, size.y - 10}, ImGuiCond_Always, {0, 1});

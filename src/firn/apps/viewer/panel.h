@@ -28,6 +28,9 @@ void draw_help(PanelState& state);
 /// Asks for the name of a scene file.
 void draw_save_dialog(PanelState& state);
 
+/// Why there is nothing to be shown as a surface.
+inline constexpr const char* kNoSurfaceIn2D = "Particles of a 2D scene have no surface.";
+
 /// Notes where the widget drawn last is.
 void mark(PanelState& state, const std::string& label);
 

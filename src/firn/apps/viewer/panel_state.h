@@ -17,15 +17,26 @@ namespace firn {
 /// can click what a user would.
 using UiItems = std::map<std::string, std::array<float, 4>>;
 
+/// What the panels tell of the surface.
+struct SurfaceNotes {
+  bool wanted = false;     ///< the material is to be seen as one
+  bool busy = false;       ///< what is wanted is being made
+  std::int64_t frame = 0;  ///< of the surface in the picture; 0: there is none yet
+  std::size_t triangles = 0;
+  double seconds = 0;   ///< that it took
+  std::string message;  ///< why there is none
+};
+
 /// What the panels tell beside the state of the controls.
 struct PanelNotes {
   std::size_t drawn = 0;          ///< particles in the picture
   bool thinned = false;           ///< fewer than there are, on software OpenGL
   double frame_milliseconds = 0;  ///< of the last picture, CPU side
   std::array<double, 2> range = {0, 1};
-  double aspect = 1;           ///< width / height of the picture
-  bool recording = false;      ///< a film is being made
-  std::int64_t pictures = 0;   ///< in the film so far
+  double aspect = 1;          ///< width / height of the picture
+  bool recording = false;     ///< a film is being made
+  std::int64_t pictures = 0;  ///< in the film so far
+  SurfaceNotes surface;
   std::string message;         ///< of the window: what was written where, or what went wrong
   bool has_start_page = true;  ///< there is one to go back to
 };

@@ -1,28 +1,24 @@
+#include <firn/apps/viewer/cloud_data.h>
 #include <firn/apps/viewer/particle_cloud.h>
 #include <firn/core/error.h>
 #include <firn/render/look.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <type_traits>
+#include <variant>
 
 namespace firn {
 namespace {
 
-constexpr std::size_t kRangeSamples = 4096;
-constexpr GLuint kPosition = 0, kValue = 1;  // a column of up to 9 components takes the attributes 1 to 3
+constexpr GLuint kPosition = 0, kValue = 1;
 constexpr int kMapUnit = 0, kPaletteUnit = 1;
 
 const char* const kVertexShader = R"(
 layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 value0;
-layout(location = 2) in vec3 value1;
-layout(location = 3) in vec3 value2;
+layout(location = 1) in float value;
 uniform mat4 view, projection;
 uniform float radius, height;
-uniform int components, by_column, every, first;
+uniform int has_body, by_column, every, first;
 uniform vec2 range;
 uniform vec3 look;
 uniform float jitter;
@@ -44,11 +40,10 @@ void main() {
   gl_Position = projection * at;
   gl_PointSize = max(height * projection[1][1] * radius / gl_Position.w, 1.0);
   if (by_column == 1) {
-    float value = components == 1 ? value0.x : sqrt(dot(value0, value0) + dot(value1, value1) + dot(value2, value2));
     float t = clamp((value - range.x) / (range.y - range.x), 0.0, 1.0);
     color = isnan(value) ? vec3(0.2) : linear(textureLod(map, vec2((t * 8.0 + 0.5) / 9.0, 0.5), 0.0).rgb);
   } else {
-    vec4 body = components == 0 ? vec4(0.0) : texelFetch(palette, ivec2(int(value0.x), 0), 0);
+    vec4 body = has_body == 0 ? vec4(0.0) : texelFetch(palette, ivec2(int(value), 0), 0);
     vec3 base = body.a > 0.5 ? body.rgb : look;
     color = base * (1.0 + jitter * (2.0 * unit_hash(uint(first + gl_VertexID * every)) - 1.0));
   }
@@ -90,65 +85,12 @@ void fill(GLuint buffer, std::size_t bytes, const Write& write) {
   glUnmapBuffer(GL_ARRAY_BUFFER);
 }
 
-/// The numbers as they are stored.
-template <class T>
-void fill_with_copy(GLuint buffer, const std::vector<T>& values) {
-  const std::size_t bytes = values.size() * sizeof(T);
-  fill(buffer, bytes, [&](void* to) {
-    if (bytes > 0) std::memcpy(to, values.data(), bytes);
-  });
-}
-
-/// As floats; where the stored numbers are floats they are copied as they are.
-template <class T>
-void fill_with_floats(GLuint buffer, const std::vector<T>& values) {
-  if constexpr (std::is_same_v<T, float>) {
-    fill_with_copy(buffer, values);
-  } else {
-    fill(buffer, values.size() * sizeof(float), [&](void* to) {
-      std::transform(values.begin(), values.end(), static_cast<float*>(to), [](T x) { return static_cast<float>(x); });
-    });
-  }
-}
-
-/// Positions from `origin`, by threes.
-void fill_with_positions(GLuint buffer, const std::vector<double>& x, const Vec3d& origin) {
-  fill(buffer, x.size() * sizeof(float), [&](void* memory) {
-    auto* to = static_cast<float*>(memory);
-    const double x0 = origin[0], x1 = origin[1], x2 = origin[2];
-    for (std::size_t i = 0; i + 2 < x.size(); i += 3) {
-      to[i] = static_cast<float>(x[i] - x0);
-      to[i + 1] = static_cast<float>(x[i + 1] - x1);
-      to[i + 2] = static_cast<float>(x[i + 2] - x2);
-    }
-  });
-}
-
 const SnapshotColumn& find_column(const Snapshot& snapshot, const std::string& name) {
   if (const SnapshotColumn* column = snapshot.find(name)) return *column;
   throw Error(ErrorKind::usage, fmt::format("color_by: there is no column \"{}\"", name));
 }
 
-void texture(GLuint id, int width, GLenum format, GLenum type, const void* texels, GLint internal) {
-  glBindTexture(GL_TEXTURE_2D, id);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexImage2D(GL_TEXTURE_2D, 0, internal, width, 1, 0, format, type, texels);
-}
-
 }  // namespace
-
-std::array<double, 2> sampled_color_range(const SnapshotColumn& column, std::size_t particles) {
-  if (particles <= kRangeSamples) return automatic_color_range(column, particles);
-  const std::size_t every = particles / kRangeSamples + 1;
-  SnapshotColumn sample;
-  std::vector<double> values;
-  for (std::size_t p = 0; p < particles; p += every) values.push_back(color_value(column, p));
-  sample.values = std::move(values);
-  return automatic_color_range(sample, (particles + every - 1) / every);
-}
 
 ParticleCloud::ParticleCloud(bool software)
     : program_("particle", std::string(kClipGlsl) + kVertexShader,
@@ -158,32 +100,19 @@ void ParticleCloud::upload(const Snapshot& snapshot) {
   size_ = snapshot.size();
   spacing_ = static_cast<float>(snapshot.particle_spacing);
   dimension_ = snapshot.dimension;
-  origin_ = {};
-  const auto& positions = snapshot.columns.front().values;
-  if (const auto* doubles = std::get_if<std::vector<double>>(&positions)) {
-    if (size_ > 0) origin_ = snapshot.position(0);
-    fill_with_positions(positions_.id(), *doubles, origin_);
-  } else {
-    std::visit([&](const auto& values) { fill_with_floats(positions_.id(), values); }, positions);
-  }
+  // Single precision is kept as it is; of double, what is left after the first particle's place has digits to spare.
+  const bool doubles = std::holds_alternative<std::vector<double>>(snapshot.columns.front().values);
+  origin_ = doubles && size_ > 0 ? snapshot.position(0) : Vec3d{};
+  fill(positions_.id(), 3 * size_ * sizeof(float),
+       [&](void* to) { write_positions(snapshot, origin_, static_cast<float*>(to)); });
 }
 
 void ParticleCloud::color(const Snapshot& snapshot, const View& view) {
   by_column_ = !view.color_by.empty();
   const SnapshotColumn* column = by_column_ ? &find_column(snapshot, view.color_by) : snapshot.find("body");
-  components_ = column == nullptr ? 0 : column->components;
-  value_type_ = GL_FLOAT;
+  has_values_ = column != nullptr;
   if (column != nullptr) {
-    std::visit(
-        [&](const auto& values) {
-          if constexpr (std::is_same_v<std::decay_t<decltype(values)>, std::vector<std::int32_t>>) {
-            value_type_ = GL_INT;
-            fill_with_copy(values_.id(), values);
-          } else {
-            fill_with_floats(values_.id(), values);
-          }
-        },
-        column->values);
+    fill(values_.id(), size_ * sizeof(float), [&](void* to) { write_values(*column, static_cast<float*>(to)); });
   }
   if (by_column_) {
     range_ = view.color_range ? *view.color_range : sampled_color_range(*column, size_);
@@ -200,7 +129,7 @@ void ParticleCloud::color(const Snapshot& snapshot, const View& view) {
 }
 
 void ParticleCloud::set_color_map(const ColorMap& map) {
-  texture(map_.id(), static_cast<int>(map.srgb.size()), GL_RGB, GL_UNSIGNED_BYTE, map.srgb.data(), GL_RGB8);
+  upload_row(map_.id(), static_cast<int>(map.srgb.size()), GL_RGB, GL_UNSIGNED_BYTE, map.srgb.data(), GL_RGB8);
 }
 
 void ParticleCloud::set_palette(const Snapshot& snapshot, const View& view) {
@@ -211,28 +140,25 @@ void ParticleCloud::set_palette(const Snapshot& snapshot, const View& view) {
     for (int c = 0; c < 3; ++c) rgba[4 * b + static_cast<std::size_t>(c)] = color->second[c];
     rgba[4 * b + 3] = 1;
   }
-  texture(palette_.id(), static_cast<int>(rgba.size() / 4), GL_RGBA, GL_FLOAT, rgba.data(), GL_RGBA32F);
+  upload_row(palette_.id(), static_cast<int>(rgba.size() / 4), GL_RGBA, GL_FLOAT, rgba.data(), GL_RGBA32F);
 }
 
 /// Thinning costs nothing here: it is the distance from one particle to the next in the buffers.
 void ParticleCloud::bind_attributes(std::size_t begin, std::size_t every) const {
-  const auto pointer = [&](GLuint index, GLuint buffer, int components, GLenum type, int offset, int stride) {
+  const auto pointer = [&](GLuint index, GLuint buffer, int components) {
     glBindBuffer(GL_ARRAY_BUFFER, buffer);
-    const std::size_t bytes = 4 * (begin * static_cast<std::size_t>(stride) + static_cast<std::size_t>(offset));
-    glVertexAttribPointer(index, components, type, GL_FALSE, static_cast<GLsizei>(4 * every) * stride,
+    const std::size_t bytes = sizeof(float) * begin * static_cast<std::size_t>(components);
+    glVertexAttribPointer(index, components, GL_FLOAT, GL_FALSE,
+                          static_cast<GLsizei>(sizeof(float) * every) * components,
                           reinterpret_cast<const void*>(bytes));
     glEnableVertexAttribArray(index);
   };
-  pointer(kPosition, positions_.id(), 3, GL_FLOAT, 0, 3);
-  for (int i = 0; i < 3; ++i) {
-    const GLuint index = kValue + static_cast<GLuint>(i);
-    const int components = std::clamp(components_ - 3 * i, 0, 3);
-    if (components > 0) {
-      pointer(index, values_.id(), components, value_type_, 3 * i, components_);
-    } else {
-      glDisableVertexAttribArray(index);
-      glVertexAttrib3f(index, 0, 0, 0);
-    }
+  pointer(kPosition, positions_.id(), 3);
+  if (has_values_) {
+    pointer(kValue, values_.id(), 1);
+  } else {
+    glDisableVertexAttribArray(kValue);
+    glVertexAttrib1f(kValue, 0);
   }
 }
 
@@ -244,7 +170,7 @@ void ParticleCloud::draw(const View& view, const CloudCamera& camera) const {
   program_.set("projection", camera.projection);
   program_.set("radius", static_cast<float>(view.radius_per_spacing * camera.thinning.radius) * spacing_);
   program_.set("height", static_cast<float>(camera.height));
-  program_.set("components", components_);
+  program_.set("has_body", has_values_ && !by_column_ ? 1 : 0);
   program_.set("by_column", by_column_ ? 1 : 0);
   program_.set("range", static_cast<float>(range_[0]), static_cast<float>(range_[1]));
   program_.set("map", kMapUnit);

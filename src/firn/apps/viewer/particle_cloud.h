@@ -59,13 +59,9 @@ class ParticleCloud {
   Vec3d origin_ = {};
   float spacing_ = 0;
   int dimension_ = 3;
-  int components_ = 0;  ///< of the values; 0: there are none
-  GLenum value_type_ = GL_FLOAT;
+  bool has_values_ = false;
   bool by_column_ = false;
   std::array<double, 2> range_ = {0, 1};
 };
-
-/// The automatic range of a column from at most some four thousand particles evenly spread over the ids.
-std::array<double, 2> sampled_color_range(const SnapshotColumn& column, std::size_t particles);
 
 }  // namespace firn

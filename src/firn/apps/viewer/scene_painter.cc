@@ -39,11 +39,20 @@ void ScenePainter::upload_grid(const ViewControls& controls) {
   lines_.upload(grid_ ? grid_lines(*grid_, find_color_map(grid_map_), origin) : std::vector<LinePoint>(), origin);
 }
 
-void ScenePainter::update(const ViewControls& controls, bool fresh, bool recolor) {
+void ScenePainter::update(const ViewControls& controls, const std::shared_ptr<const MeshedSurface>& surface,
+                          bool recolor) {
   if (controls.snapshot() == nullptr) return;
-  if (fresh) cloud_.upload(*controls.snapshot());
-  if (fresh || recolor) cloud_.color(*controls.snapshot(), controls.view());
-  if (controls.shown() != ViewControls::Shown::particles) upload_grid(controls);
+  surface_.upload(surface);
+  // While a surface is shown, particles that nobody sees are not copied.
+  if (surface_.empty()) {
+    const bool fresh = cloud_of_ != controls.status().published;
+    cloud_of_ = controls.status().published;
+    if (fresh) cloud_.upload(*controls.snapshot());
+    if (fresh || recolor) cloud_.color(*controls.snapshot(), controls.view());
+  } else if (recolor) {
+    cloud_of_ = 0;
+  }
+  if (controls.shown() != ViewControls::Shown::material) upload_grid(controls);
 }
 
 void ScenePainter::draw(ViewControls& controls, int width, int height, bool moving, bool soft_light,
@@ -56,26 +65,30 @@ void ScenePainter::draw(ViewControls& controls, int width, int height, bool movi
   const OrbitCamera& camera = controls.camera();
   const double aspect = static_cast<double>(width) / height;
   const Thinning thinning = thin(cloud_.size(), software_ && moving ? moving_budget_ : 0, snapshot->dimension);
-  notes.thinned = thinning.every > 1;
+  notes.thinned = surface_.empty() && thinning.every > 1;
   notes.drawn = cloud_.size() / thinning.every;
-  notes.range = cloud_.range();
+  notes.range = surface_.empty() ? cloud_.range() : surface_.range(view);
   notes.aspect = aspect;
 
   CloudCamera seen = {camera.view_matrix(cloud_.origin()), camera.projection_matrix(aspect), height, thinning};
   std::tie(seen.clip_normal, seen.clip_offset) = controls.clip_plane();
+  const Vec3d origin = cloud_.origin();
+  const auto draw_material = [&](const CloudCamera& from) {
+    surface_.empty() ? cloud_.draw(view, from) : surface_.draw(view, from, origin);
+  };
   const bool soft = soft_light && !camera.flat();
   if (soft) {
     if (shadow_map_ == nullptr) shadow_map_ = std::make_unique<ShadowMap>();
     if (occlusion_ == nullptr) occlusion_ = std::make_unique<AmbientOcclusion>();
     const auto [center, radius] = lit_ball(*snapshot);
-    seen.shadows = shadow_map_->draw(cloud_, solids_, view, seen, center, radius);
+    seen.shadows = shadow_map_->draw(draw_material, origin, solids_, view, seen, center, radius);
     occlusion_->begin(width, height);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   }
   solids_.draw_sky(view, camera, aspect);
   glEnable(GL_DEPTH_TEST);
-  if (controls.shown() != ViewControls::Shown::grid) cloud_.draw(view, seen);
-  if (controls.shown() != ViewControls::Shown::particles) {
+  if (controls.shown() != ViewControls::Shown::grid) draw_material(seen);
+  if (controls.shown() != ViewControls::Shown::material) {
     CloudCamera lines = seen;
     lines.view = camera.view_matrix(lines_.origin());
     // Of 2D the lines lie in the particles' plane, which must not hide them.

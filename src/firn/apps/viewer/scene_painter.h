@@ -6,6 +6,7 @@
 #include <firn/apps/viewer/particle_cloud.h>
 #include <firn/apps/viewer/shadow_map.h>
 #include <firn/apps/viewer/solid_drawer.h>
+#include <firn/apps/viewer/surface_drawer.h>
 #include <firn/apps/viewer/view_controls.h>
 
 #include <memory>
@@ -19,8 +20,9 @@ class ScenePainter {
   /// there; 0: all of them
   ScenePainter(bool software, std::size_t moving_budget);
 
-  /// Copies a new snapshot, or computes its colours anew.
-  void update(const ViewControls& controls, bool fresh, bool recolor);
+  /// Copies what is new: the snapshot, or what it is coloured by. @param surface to be drawn instead of the particles;
+  /// null for the particles
+  void update(const ViewControls& controls, const std::shared_ptr<const MeshedSurface>& surface, bool recolor);
   /// Notes how many particles were drawn, and the range of colours.
   void draw(ViewControls& controls, int width, int height, bool moving, bool soft_light, PanelNotes& notes);
 
@@ -31,7 +33,9 @@ class ScenePainter {
   const std::size_t moving_budget_;
   ParticleCloud cloud_;
   SolidDrawer solids_;
+  SurfaceDrawer surface_;
   LineDrawer lines_;
+  std::uint64_t cloud_of_ = 0;  ///< which of the source's frames the cloud has
   std::shared_ptr<const GridValues> grid_;
   std::string grid_map_;
   // Made when they are first needed: not all drivers bear framebuffers of this size.

@@ -78,14 +78,15 @@ ShadowMap::ShadowMap() {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
-Shadows ShadowMap::draw(const ParticleCloud& cloud, const SolidDrawer& solids, const View& view,
-                        const CloudCamera& camera, const Vec3d& center, double radius) const {
+Shadows ShadowMap::draw(const std::function<void(const CloudCamera&)>& draw_material, const Vec3d& origin,
+                        const SolidDrawer& solids, const View& view, const CloudCamera& camera, const Vec3d& center,
+                        double radius) const {
   GLint before[4] = {}, target = 0;
   glGetIntegerv(GL_VIEWPORT, before);
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
   CloudCamera sun = camera;
   sun.view = looking_along(-view.sun_direction, view.up);
-  const Vec3d at = center - cloud.origin();
+  const Vec3d at = center - origin;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j)
       sun.view[12 + i] -= sun.view[4 * j + i] * static_cast<float>(at[static_cast<int>(j)]);
@@ -100,8 +101,8 @@ Shadows ShadowMap::draw(const ParticleCloud& cloud, const SolidDrawer& solids, c
   glViewport(0, 0, kSide, kSide);
   glClear(GL_DEPTH_BUFFER_BIT);
   glEnable(GL_DEPTH_TEST);
-  cloud.draw(view, sun);
-  solids.draw_casters(view, sun.view, sun.projection, cloud.origin());
+  draw_material(sun);
+  solids.draw_casters(view, sun.view, sun.projection, origin);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
   glViewport(before[0], before[1], before[2], before[3]);
   // From [-1, 1] to [0, 1].

@@ -3,6 +3,8 @@
 #include <firn/apps/viewer/particle_cloud.h>
 #include <firn/apps/viewer/solid_drawer.h>
 
+#include <functional>
+
 namespace firn {
 
 /// What the sun sees, as a picture of depths: whatever lies behind is in shadow.
@@ -11,9 +13,11 @@ class ShadowMap {
   ShadowMap();
 
   /// Draws what casts shadows within a ball (centre, radius, m) and leaves the framebuffer as it was. `camera` is the
-  /// one whose picture is going to be lit.
-  Shadows draw(const ParticleCloud& cloud, const SolidDrawer& solids, const View& view, const CloudCamera& camera,
-               const Vec3d& center, double radius) const;
+  /// one whose picture is going to be lit; its coordinates, and those that `draw_material` draws with, count from
+  /// `origin`.
+  Shadows draw(const std::function<void(const CloudCamera&)>& draw_material, const Vec3d& origin,
+               const SolidDrawer& solids, const View& view, const CloudCamera& camera, const Vec3d& center,
+               double radius) const;
 
  private:
   GlTexture map_;

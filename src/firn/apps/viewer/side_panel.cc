@@ -35,17 +35,55 @@ void draw_clip(ViewControls& controls, PanelState& state) {
   mark(state, "clip flipped");
 }
 
+/// In particle spacings, as `firn surface` has them.
+void draw_surface_options(ViewControls& controls, const SurfaceNotes& notes, PanelState& state) {
+  SurfaceOptions& options = controls.surface_options;
+  const auto slider = [&](const char* label, double* value, float low, float high, const char* help) {
+    auto shown = static_cast<float>(*value);
+    ImGui::SetNextItemWidth(150);
+    if (ImGui::SliderFloat(label, &shown, low, high, "%.2f", ImGuiSliderFlags_AlwaysClamp)) *value = shown;
+    mark(state, fmt::format("surface {}", label));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help);
+  };
+  slider("radius", &options.radius, 0.3F, 3, "how far it is from the outermost particles, in their spacings");
+  slider("voxel", &options.voxel, 0.2F, 3, "how fine it is, in particle spacings; smaller ones take longer");
+  // Spheres that are thinner than this would slip through the voxels.
+  options.voxel = std::min(options.voxel, 1.5 * options.radius);
+  ImGui::SetNextItemWidth(150);
+  ImGui::SliderInt("smoothing", &options.smoothing, 0, 40, "%d", ImGuiSliderFlags_AlwaysClamp);
+  mark(state, "surface smoothing");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("passes that take bumps away and keep the volume");
+  if (ImGui::SmallButton("as firn surface does")) options = {};
+  mark(state, "surface defaults");
+  if (notes.triangles > 0) ImGui::TextDisabled("made in %.2f s", notes.seconds);
+}
+
+void draw_material_choice(ViewControls& controls, const SurfaceNotes& notes, PanelState& state) {
+  if (ImGui::RadioButton("particles", !controls.as_surface())) controls.set_as_surface(false);
+  mark(state, "particles");
+  ImGui::SameLine();
+  const bool possible = controls.can_have_surface();
+  ImGui::BeginDisabled(!possible);
+  if (ImGui::RadioButton("surface", controls.as_surface())) controls.set_as_surface(true);
+  ImGui::EndDisabled();
+  mark(state, "surface");
+  if (!possible && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", kNoSurfaceIn2D);
+  if (controls.as_surface()) draw_surface_options(controls, notes, state);
+}
+
 bool draw_view_tab(ViewControls& controls, const PanelNotes& notes, PanelState& state) {
   using Shown = ViewControls::Shown;
   const bool recolor = draw_colors(controls, notes, state);
   ImGui::Separator();
-  const char* names[] = {"particles", "particles and grid", "grid"};
+  draw_material_choice(controls, notes.surface, state);
+  ImGui::Separator();
+  const char* names[] = {"no grid", "with the grid", "grid alone"};
   for (int i = 0; i < 3; ++i) {
     if (ImGui::RadioButton(names[i], static_cast<int>(controls.shown()) == i))
       controls.set_shown(static_cast<Shown>(i));
     mark(state, names[i]);
   }
-  if (controls.shown() != Shown::particles && controls.source().grid() == nullptr) {
+  if (controls.shown() != Shown::material && controls.source().grid() == nullptr) {
     ImGui::TextDisabled("Frames of a run have no grid.");
   }
   ImGui::Separator();

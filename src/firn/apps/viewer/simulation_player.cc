@@ -159,6 +159,20 @@ void SimulationPlayer::want_grid(bool wanted) {
   changed_.notify_all();
 }
 
+void SimulationPlayer::pace(bool paced) {
+  const std::lock_guard lock(mutex_);
+  if (paced_ == paced) return;
+  paced_ = paced;
+  changed_.notify_all();
+}
+
+void SimulationPlayer::taken(std::uint64_t published) {
+  const std::lock_guard lock(mutex_);
+  if (taken_ == published) return;
+  taken_ = published;
+  changed_.notify_all();
+}
+
 void SimulationPlayer::stop() {
   {
     const std::lock_guard lock(mutex_);
@@ -174,13 +188,16 @@ bool SimulationPlayer::has_orders() const {
   return there && (edited_ || grid_is_late_ || !drops_.empty());
 }
 
+/// Under the lock.
+bool SimulationPlayer::may_advance() const { return wish_ != Wish::rest && (!paced_ || taken_ == status_.published); }
+
 SimulationPlayer::Work SimulationPlayer::wait_for_work() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return stop_ || rebuild_ || wish_ != Wish::rest || has_orders(); });
+  changed_.wait(lock, [this] { return stop_ || rebuild_ || may_advance() || has_orders(); });
   if (stop_) return Work::end;
   status_.busy = true;
   if (std::exchange(rebuild_, false)) return Work::build;
-  if (wish_ == Wish::rest) return Work::change;
+  if (!may_advance()) return Work::change;
   if (wish_ == Wish::step) wish_ = Wish::rest;
   return Work::advance;
 }

@@ -54,6 +54,8 @@ class SimulationPlayer final : public FrameSource {
   void grab(const std::optional<Grab>& grab) override;
   void drop(const Drop& drop) override;
   void want_grid(bool wanted) override;
+  void pace(bool paced) override;
+  void taken(std::uint64_t published) override;
   /// Ends the thread. Commands have no effect any more; the last snapshot and status stay.
   void stop();
 
@@ -69,6 +71,7 @@ class SimulationPlayer final : public FrameSource {
 
   Work wait_for_work();
   bool has_orders() const;
+  bool may_advance() const;
   void build();
   void advance();
   /// True if particles came.
@@ -91,6 +94,8 @@ class SimulationPlayer final : public FrameSource {
   bool edited_ = false, ever_edited_ = false;
   bool wants_grid_ = false;
   bool grid_is_late_ = false;  ///< asked for after the frame was published
+  bool paced_ = false;
+  std::uint64_t taken_ = 0;
   bool rebuild_ = true;
   bool stop_ = false;
   std::thread thread_;  ///< last: it starts when all else is there

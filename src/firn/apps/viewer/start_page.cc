@@ -42,7 +42,7 @@ void StartPage::read_some() {
 }
 
 /// True if it was double-clicked.
-bool StartPage::draw_entry(std::size_t i, UiItems& items) {
+bool StartPage::draw_entry(std::size_t i, bool double_clicked, UiItems& items) {
   const GalleryEntry& entry = entries_[i];
   ImGui::PushID(static_cast<int>(i));
   ImGui::BeginGroup();
@@ -51,7 +51,7 @@ bool StartPage::draw_entry(std::size_t i, UiItems& items) {
   bool open = false;
   if (ImGui::Selectable("##entry", chosen, ImGuiSelectableFlags_AllowDoubleClick, {kThumbnailWidth, kRowHeight - 12})) {
     chosen_ = i;
-    open = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+    open = double_clicked;
   }
   note_item(items, entry.scene.stem().string());
   if (ImGui::IsItemHovered() && !entry.text.empty()) {
@@ -79,7 +79,7 @@ bool StartPage::draw_entry(std::size_t i, UiItems& items) {
   return open;
 }
 
-std::optional<std::filesystem::path> StartPage::draw(const std::string& message, UiItems& items) {
+std::optional<std::filesystem::path> StartPage::draw(const std::string& message, bool double_clicked, UiItems& items) {
   read_some();
   items.clear();
   std::optional<std::filesystem::path> opened;
@@ -108,7 +108,7 @@ std::optional<std::filesystem::path> StartPage::draw(const std::string& message,
       ImGui::Separator();
     }
     if (column > 0) ImGui::SameLine(static_cast<float>(column) * (kThumbnailWidth + 10) + 8);
-    if (draw_entry(i, items)) opened = entries_[i].scene;
+    if (draw_entry(i, double_clicked, items)) opened = entries_[i].scene;
     column = (column + 1) % columns;
   }
   ImGui::EndChild();

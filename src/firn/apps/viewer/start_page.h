@@ -19,8 +19,9 @@ class StartPage {
   ~StartPage();
 
   /// Inside a frame of Dear ImGui, over the whole window. The scene that was double-clicked, if one was. `message`
-  /// stands below the heading.
-  std::optional<std::filesystem::path> draw(const std::string& message, UiItems& items);
+  /// stands below the heading. @param double_clicked whether the last click was the second one of two: only events
+  /// know, a picture may take longer than both clicks
+  std::optional<std::filesystem::path> draw(const std::string& message, bool double_clicked, UiItems& items);
   /// Whether pictures are still to be read: a few are in each draw.
   bool loading() const { return next_ < entries_.size(); }
   const std::vector<GalleryEntry>& entries() const { return entries_; }
@@ -31,7 +32,7 @@ class StartPage {
     int width = 0, height = 0;
   };
   void read_some();
-  bool draw_entry(std::size_t i, UiItems& items);
+  bool draw_entry(std::size_t i, bool double_clicked, UiItems& items);
 
   std::vector<GalleryEntry> entries_;
   std::vector<std::unique_ptr<Thumbnail>> thumbnails_;

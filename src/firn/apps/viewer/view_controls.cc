@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <thread>
 #include <utility>
 
 namespace firn {
@@ -85,6 +86,9 @@ bool ViewControls::key(char key) {
     case 'g':
       set_shown(static_cast<Shown>((static_cast<int>(shown_) + 1) % 3));
       return true;
+    case 'u':
+      set_as_surface(!as_surface_);
+      return true;
     case 'c':
       clip.on = !clip.on;
       return true;
@@ -100,7 +104,28 @@ void ViewControls::set_orthographic(bool orthographic) {
 
 void ViewControls::set_shown(Shown shown) {
   shown_ = shown;
-  source_.want_grid(shown != Shown::particles);
+  source_.want_grid(shown != Shown::material);
+}
+
+void ViewControls::set_as_surface(bool as_surface) {
+  if (!can_have_surface()) return;
+  as_surface_ = as_surface;
+  if (shown_ == Shown::grid) set_shown(Shown::material);
+}
+
+std::optional<SurfaceOrder> ViewControls::wanted_surface() const {
+  if (!as_surface_ || shown_ == Shown::grid || snapshot_ == nullptr || snapshot_->dimension != 3) return std::nullopt;
+  const View view = this->view();
+  // A simulation that goes on needs the processors more than the picture of it does.
+  const bool simulates = !source_.follows_clock() && (status_.busy || status_.state == PlayState::playing);
+  const int processors = static_cast<int>(std::thread::hardware_concurrency());
+  return SurfaceOrder{snapshot_,
+                      status_.frame.frame,
+                      surface_options,
+                      view.color_by,
+                      view.material_colors,
+                      view.body_colors,
+                      simulates ? 1 : std::max(processors / 2, 1)};
 }
 
 void ViewControls::drag(Drag kind, double right, double up) {

@@ -5,6 +5,7 @@
 #include <firn/apps/viewer/orbit_camera.h>
 #include <firn/apps/viewer/picker.h>
 #include <firn/apps/viewer/save_scene.h>
+#include <firn/apps/viewer/surface_mesher.h>
 #include <firn/render/scene_view.h>
 #include <firn/scene/settings.h>
 
@@ -33,13 +34,13 @@ struct PicturePlace {
 class ViewControls {
  public:
   enum class Drag { orbit, pan };
-  /// What is drawn of the material.
-  enum class Shown { particles, both, grid };
+  /// The material, the grid or both.
+  enum class Shown { material, both, grid };
 
   ViewControls(const Scene& scene, FrameSource& source);
 
   /// ' ' play or pause, '.' step, 'r' reset, 'f' frame all, 'p' perspective or not, '1' to '3' look from x, y or z, 'g'
-  /// particles, both or grid, 'c' clip plane. False for any other key.
+  /// material, both or grid, 'u' particles or surface, 'c' clip plane. False for any other key.
   bool key(char key);
   /// In heights of the picture, right and up. In 2D both kinds pan.
   void drag(Drag kind, double right, double up);
@@ -67,6 +68,16 @@ class ViewControls {
   Shown shown() const { return shown_; }
   void set_shown(Shown shown);
   void set_orthographic(bool orthographic);
+
+  /// Whether the material has a surface to be drawn: that of 2D has none.
+  bool can_have_surface() const { return wanted_->dimension == 3; }
+  /// Whether it is drawn as a surface instead of as particles.
+  bool as_surface() const { return as_surface_; }
+  /// Shows the material if only the grid was shown. Nothing happens if there can be no surface.
+  void set_as_surface(bool as_surface);
+  SurfaceOptions surface_options;
+  /// The surface that is to be seen; nothing if none is, or there is no frame yet.
+  std::optional<SurfaceOrder> wanted_surface() const;
 
   /// Picks what is there. What a particle's number was before is forgotten.
   void pick_at(const PicturePlace& place);
@@ -113,7 +124,8 @@ class ViewControls {
   SourceStatus status_;
   std::uint64_t seen_ = 0;
   OrbitCamera camera_;
-  Shown shown_ = Shown::particles;
+  Shown shown_ = Shown::material;
+  bool as_surface_ = false;
   Picked picked_;
   std::optional<Grab> grab_;
   std::array<Vec3d, 2> bounds_ = {};  ///< of the particles, m

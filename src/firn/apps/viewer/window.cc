@@ -1,25 +1,15 @@
-#include <epoxy/gl.h>
-// After epoxy, which stands in for the system's OpenGL headers.
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
-
+#include <firn/apps/viewer/window_state.h>
+// After epoxy and GLFW.
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <firn/apps/viewer/panel.h>
-#include <firn/apps/viewer/recorder.h>
-#include <firn/apps/viewer/scene_painter.h>
-#include <firn/apps/viewer/start_page.h>
-#include <firn/apps/viewer/window.h>
-#include <firn/apps/viewer/window_display.h>
 #include <firn/core/error.h>
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <functional>
-#include <optional>
+#include <ctime>
 #include <utility>
 
 namespace firn {
@@ -27,13 +17,15 @@ namespace {
 
 /// How long the window sleeps if nothing happens, s.
 constexpr double kSleep = 0.05;
-constexpr int kButtons = 3;
-/// Dear ImGui takes a picture or two to lay out what an event has opened.
-constexpr int kDrawsPerEvent = 3;
 /// Wider windows begin with the side panel.
 constexpr int kWideWindow = 1000;
-/// A press and a release this close to each other are a click, pixels.
-constexpr double kClickReach = 4;
+
+/// Of this thread, s: what others do on the same processor does not count.
+double processor_seconds() {
+  timespec time = {};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 ViewerWindow& of(GLFWwindow* window) { return *static_cast<ViewerWindow*>(glfwGetWindowUserPointer(window)); }
 
@@ -54,56 +46,16 @@ void fill(std::array<char, 512>& text, const std::string& value) {
 
 }  // namespace
 
-struct ViewerWindow::State {
-  explicit State(const Options& wanted)
-      : options(wanted),
-        display(wanted.width, wanted.height, wanted.title),
-        interface(display.window()),
-        software(display.software()),
-        start_page(wanted.gallery) {
-    panel.side = wanted.width >= kWideWindow;
-    panel.soft_light = !software;
-    notes.has_start_page = static_cast<bool>(wanted.open);
-    ImGui::GetIO().MouseDoubleClickTime = static_cast<float>(wanted.double_click);
-  }
-
-  void look_at(const Scene& scene, FrameSource& source);
-  void leave();
-  void open(const std::filesystem::path& path);
-  PicturePlace place() const;
-  void draw_scene();
-  void draw_interface();
-  void read_picture();
-  void serve();
-  void record();
-  void guarded(const std::function<void()>& work);
-  bool key_of_window(int key, int mods);
-  void click();
-  bool on_start_page() const { return controls == nullptr; }
-
-  const Options options;
-  WindowDisplay display;  // first: all below needs its context
-  WindowInterface interface;
-  const bool software;
-  StartPage start_page;
-  std::optional<Show> shown;  // before the controls, which refer to its source
-  std::unique_ptr<ViewControls> controls;
-  std::unique_ptr<ScenePainter> painter;
-  std::unique_ptr<Recorder> recorder;
-  double film_rate = 24;
-  std::string start_message;
-  PanelState panel;
-  PanelNotes notes;
-  Times times;
-  Image picture;
-  std::optional<double> last_draw;  // s of GLFW's clock
-  double cursor[2] = {-1, -1}, pressed_at[2] = {-1, -1};
-  std::array<bool, kButtons> down = {}, clicked = {};  // clicked: pressed since the last picture, perhaps released
-  bool shift = false;
-  bool dragging = false;
-  bool recolor = false;
-  int wanted_draws = kDrawsPerEvent;  // pictures that what happened asks for
-};
+ViewerWindow::State::State(const Options& wanted)
+    : options(wanted),
+      display(wanted.width, wanted.height, wanted.title),
+      interface(display.window()),
+      software(display.software()),
+      start_page(wanted.gallery) {
+  panel.side = wanted.width >= kWideWindow;
+  panel.soft_light = !software;
+  notes.has_start_page = static_cast<bool>(wanted.open);
+}
 
 ViewerWindow::ViewerWindow(const Options& options) : state_(std::make_unique<State>(options)) {
   glfwSetWindowUserPointer(state_->display.window(), this);
@@ -144,6 +96,9 @@ void ViewerWindow::State::leave() {
   guarded([&] {
     if (recorder) recorder->stop();
   });
+  if (controls) controls->source().pace(false);
+  surface.clear();
+  film_waits = false;
   controls.reset();
   painter.reset();
   recorder.reset();
@@ -162,6 +117,7 @@ void ViewerWindow::show(Show show) {
 
 void ViewerWindow::State::open(const std::filesystem::path& path) {
   try {
+    double_clicked = false;
     Show next = options.open(path);
     start_message.clear();
     of(display.window()).show(std::move(next));
@@ -199,7 +155,7 @@ void ViewerWindow::State::draw_interface() {
   ImGui::NewFrame();
   std::optional<std::filesystem::path> opened;
   if (on_start_page()) {
-    opened = start_page.draw(start_message, panel.items);
+    opened = start_page.draw(start_message, double_clicked, panel.items);
   } else if (draw_panels(*controls, notes, panel)) {
     recolor = true;
   }
@@ -253,39 +209,52 @@ void ViewerWindow::State::serve() {
   if (std::exchange(panel.wants_start_page, false) && notes.has_start_page) leave();
 }
 
-/// A new frame becomes a picture of the film, panels included if they are seen.
-void ViewerWindow::State::record() {
-  if (on_start_page() || !recorder->recording()) return;
-  guarded([&] {
-    read_picture();
-    recorder->add(picture);
-    if (!recorder->recording()) {
-      notes.message =
-          fmt::format("the window changed its size, which ends the film: {}", recorder->film_path().string());
-    }
-  });
+/// A new frame becomes a picture of the film, panels included if they are seen; that of a surface when its surface is
+/// in it.
+void ViewerWindow::State::record(bool fresh) {
+  if (on_start_page()) return;
+  film_waits = recorder->recording() && (film_waits || fresh);
+  if (film_waits && surface.settled()) {
+    film_waits = false;
+    guarded([&] {
+      picture = display.read_picture();
+      recorder->add(picture);
+      if (!recorder->recording()) {
+        notes.message =
+            fmt::format("the window changed its size, which ends the film: {}", recorder->film_path().string());
+      }
+    });
+  }
   notes.recording = recorder->recording();
   notes.pictures = recorder->pictures();
+  FrameSource& source = controls->source();
+  source.pace(notes.recording && surface.notes().wanted);
+  if (!film_waits) source.taken(controls->status().published);
+}
+
+/// Takes what is new of the scene; true if there is a new frame.
+bool ViewerWindow::State::update_scene(double seconds) {
+  controls->source().advance(film_waits ? 0 : seconds);
+  const bool fresh = controls->update();
+  const auto meshed = surface.update(*controls);
+  notes.surface = surface.notes();
+  painter->update(*controls, meshed, std::exchange(recolor, false));
+  return fresh;
 }
 
 void ViewerWindow::draw() {
   State& s = *state_;
   glfwPollEvents();
   s.serve();
-  const double start = glfwGetTime();
-  bool fresh = false;
-  if (!s.on_start_page()) {
-    s.controls->source().advance(s.last_draw ? start - *s.last_draw : 0);
-    fresh = s.controls->update();
-    s.painter->update(*s.controls, fresh, std::exchange(s.recolor, false));
-  }
-  s.last_draw = start;
-  const double uploaded = glfwGetTime();
+  const double now = glfwGetTime(), start = processor_seconds();
+  const bool fresh = !s.on_start_page() && s.update_scene(s.last_draw ? now - *s.last_draw : 0);
+  s.last_draw = now;
+  const double uploaded = processor_seconds();
   if (fresh) s.times.upload = uploaded - start;
   s.draw_scene();
   s.draw_interface();
-  s.times.draw = glfwGetTime() - uploaded;
-  if (fresh) s.record();
+  s.times.draw = processor_seconds() - uploaded;
+  s.record(fresh);
   s.notes.frame_milliseconds = 1e3 * (s.times.draw + (fresh ? s.times.upload : 0));
   s.wanted_draws = std::max(s.wanted_draws - 1, 0);
   glfwSwapBuffers(s.display.window());
@@ -294,6 +263,7 @@ void ViewerWindow::draw() {
 void ViewerWindow::run() {
   State& s = *state_;
   SourceStatus shown;
+  std::uint64_t surface_shown = 0;
   bool was_moving = false;
   while (glfwWindowShouldClose(s.display.window()) == GLFW_FALSE) {
     glfwPollEvents();
@@ -309,8 +279,10 @@ void ViewerWindow::run() {
       was_moving = s.controls->moving(glfwGetTime());
       // Software OpenGL would take the simulation's processors for pictures that do not differ.
       const bool playback = source.follows_clock() && now.state == PlayState::playing;
-      wanted = wanted || changed || was_moving || playback;
+      const std::uint64_t surface_now = s.surface.version();
+      wanted = wanted || changed || was_moving || playback || surface_now != surface_shown;
       shown = now;
+      surface_shown = surface_now;
     }
     if (wanted) {
       draw();
@@ -323,151 +295,12 @@ void ViewerWindow::run() {
   });
 }
 
-void ViewerWindow::State::read_picture() {
-  int width = 0, height = 0;
-  glfwGetFramebufferSize(display.window(), &width, &height);
-  Image upside_down(width, height);
-  picture = Image(width, height);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, upside_down.rgb.data());
-  for (int y = 0; y < height; ++y) {
-    const auto* row = upside_down.pixel(0, height - 1 - y);
-    std::copy(row, row + 3 * width, picture.pixel(0, y));
-  }
-}
-
 const Image& ViewerWindow::capture() {
   // What is in the back buffer after a swap is undefined: the picture is drawn once more, and not shown.
   state_->draw_scene();
   if (ImGui::GetDrawData() != nullptr) ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-  state_->read_picture();
+  state_->picture = state_->display.read_picture();
   return state_->picture;
-}
-
-/// Keys that are about the window; true if it was one of them.
-bool ViewerWindow::State::key_of_window(int key, int mods) {
-  switch (key) {
-    case GLFW_KEY_ESCAPE:
-      if (panel.help || panel.save_dialog) {
-        panel.help = panel.save_dialog = false;
-      } else {
-        panel.wants_start_page = true;
-      }
-      return true;
-    case GLFW_KEY_F1:
-      panel.help = !panel.help;
-      return true;
-    case GLFW_KEY_SLASH:
-      // Where it is without Shift, too: the key with the question mark.
-      panel.help = !panel.help;
-      return true;
-    case GLFW_KEY_TAB:
-      panel.side = !panel.side;
-      return true;
-    case GLFW_KEY_H:
-      panel.hidden = !panel.hidden;
-      return true;
-    case GLFW_KEY_L:
-      panel.soft_light = !panel.soft_light;
-      return true;
-    case GLFW_KEY_I:
-      panel.wants_picture = true;
-      return true;
-    case GLFW_KEY_V:
-      panel.wants_film = true;
-      return true;
-    case GLFW_KEY_S:
-      panel.save_dialog = true;
-      return true;
-    case GLFW_KEY_B:
-      controls->drop_at(place());
-      return true;
-    case GLFW_KEY_O:
-      controls->place_collider_at(place());
-      return true;
-    default:
-      return (mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) != 0;
-  }
-}
-
-void ViewerWindow::on_key(int key, int scancode, int action, int mods) {
-  State& s = *state_;
-  s.wanted_draws = kDrawsPerEvent;
-  ImGui_ImplGlfw_KeyCallback(s.display.window(), key, scancode, action, mods);
-  if (action == GLFW_RELEASE || s.on_start_page()) return;
-  if (ImGui::GetIO().WantTextInput && key != GLFW_KEY_ESCAPE) return;
-  // Stepping may repeat while the key is held; anything else toggles or begins anew.
-  if (action == GLFW_REPEAT && key != GLFW_KEY_PERIOD) return;
-  if (s.key_of_window(key, mods)) return;
-  constexpr std::pair<int, char> kKeys[] = {
-      {GLFW_KEY_SPACE, ' '}, {GLFW_KEY_PERIOD, '.'}, {GLFW_KEY_R, 'r'}, {GLFW_KEY_F, 'f'}, {GLFW_KEY_P, 'p'},
-      {GLFW_KEY_1, '1'},     {GLFW_KEY_2, '2'},      {GLFW_KEY_3, '3'}, {GLFW_KEY_G, 'g'}, {GLFW_KEY_C, 'c'}};
-  for (const auto& [number, character] : kKeys) {
-    if (number == key) s.controls->key(character);
-  }
-}
-
-void ViewerWindow::on_character(unsigned code) {
-  state_->wanted_draws = kDrawsPerEvent;
-  ImGui_ImplGlfw_CharCallback(state_->display.window(), code);
-}
-
-/// A button that was pressed and released without moving the mouse.
-void ViewerWindow::State::click() {
-  controls->pick_at(place());
-  if (controls->picked().kind != Picked::Kind::nothing && panel.side) panel.tab = "Picked";
-}
-
-void ViewerWindow::on_button(int button, int action, int mods) {
-  State& s = *state_;
-  s.wanted_draws = kDrawsPerEvent;
-  if (button < 0 || button >= kButtons) return;
-  const bool pressed = action == GLFW_PRESS;
-  s.down[static_cast<std::size_t>(button)] = pressed;
-  if (pressed) s.clicked[static_cast<std::size_t>(button)] = true;
-  s.shift = (mods & GLFW_MOD_SHIFT) != 0;
-  if (s.on_start_page()) return;
-  const bool free = !ImGui::GetIO().WantCaptureMouse;
-  const bool left = button == GLFW_MOUSE_BUTTON_LEFT;
-  if (pressed && free) {
-    s.pressed_at[0] = s.cursor[0];
-    s.pressed_at[1] = s.cursor[1];
-    if (left && (mods & GLFW_MOD_CONTROL) != 0 && s.controls->begin_grab(s.place())) return;
-  }
-  if (!pressed && left && s.controls->grabbed()) {
-    s.controls->end_grab();
-    return;
-  }
-  if (!pressed && left && s.dragging &&
-      std::hypot(s.cursor[0] - s.pressed_at[0], s.cursor[1] - s.pressed_at[1]) < kClickReach) {
-    s.click();
-  }
-  const bool any = std::find(s.down.begin(), s.down.end(), true) != s.down.end();
-  s.dragging = any && (s.dragging || free);
-}
-
-void ViewerWindow::on_cursor(double x, double y) {
-  State& s = *state_;
-  const double dx = x - s.cursor[0], dy = y - s.cursor[1];
-  s.cursor[0] = x;
-  s.cursor[1] = y;
-  s.wanted_draws = kDrawsPerEvent;
-  if (s.on_start_page()) return;
-  if (s.controls->grabbed()) {
-    s.controls->move_grab(s.place());
-    return;
-  }
-  if (!s.dragging) return;
-  int width = 0, height = 0;
-  glfwGetWindowSize(s.display.window(), &width, &height);
-  const auto kind = s.down[GLFW_MOUSE_BUTTON_LEFT] && !s.shift ? ViewControls::Drag::orbit : ViewControls::Drag::pan;
-  s.controls->drag(kind, dx / std::max(height, 1), -dy / std::max(height, 1));
-}
-
-void ViewerWindow::on_scroll(double dx, double dy) {
-  state_->wanted_draws = kDrawsPerEvent;
-  ImGui_ImplGlfw_ScrollCallback(state_->display.window(), dx, dy);
-  if (!state_->on_start_page() && !ImGui::GetIO().WantCaptureMouse) state_->controls->scroll(dy);
 }
 
 }  // namespace firn

@@ -37,10 +37,10 @@ class ViewerWindow {
     /// Between the clicks of a double click at most, s.
     double double_click = 0.4;
   };
-  /// Time of one picture on the side of the CPU, s.
+  /// Processor time of the window's thread for one picture, s.
   struct Times {
     double upload = 0;  ///< copy of a new snapshot into graphics memory
-    double draw = 0;    ///< all calls of OpenGL and the panel, without waiting for the picture
+    double draw = 0;    ///< all calls of OpenGL and the panel
   };
 
   /// Throws Error (resources) where there is no display: before a simulation is built that nobody could see.

@@ -10,10 +10,14 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <string_view>
 
 namespace firn {
 namespace {
+
+/// Windows that are open, all in the main thread.
+int living = 0;
 
 std::string last_glfw_error() {
   const char* text = nullptr;
@@ -41,11 +45,13 @@ WindowDisplay::WindowDisplay(int width, int height, const std::string& title) {
     glfwTerminate();
     fail_to_open(reason);
   }
+  ++living;
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
 }
 
 WindowDisplay::~WindowDisplay() {
+  --living;
   glfwDestroyWindow(window_);
   glfwTerminate();
 }
@@ -59,7 +65,22 @@ bool WindowDisplay::software() const {
   return false;
 }
 
+Image WindowDisplay::read_picture() const {
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(window_, &width, &height);
+  Image upside_down(width, height), picture(width, height);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, upside_down.rgb.data());
+  for (int y = 0; y < height; ++y) {
+    const auto* row = upside_down.pixel(0, height - 1 - y);
+    std::copy(row, row + 3 * width, picture.pixel(0, y));
+  }
+  return picture;
+}
+
 void WindowDisplay::require() {
+  // Whoever has a window has a display; to end GLFW would take the window away.
+  if (living > 0) return;
   if (glfwInit() == GLFW_FALSE) fail_to_open(last_glfw_error());
   glfwTerminate();
 }

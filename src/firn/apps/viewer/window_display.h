@@ -1,5 +1,7 @@
 #pragma once
 
+#include <firn/render/image.h>
+
 #include <string>
 
 struct GLFWwindow;
@@ -18,6 +20,9 @@ class WindowDisplay {
   GLFWwindow* window() const { return window_; }
   /// Whether OpenGL is a program on the processor.
   bool software() const;
+
+  /// What has been drawn, before it is shown.
+  Image read_picture() const;
 
   /// Throws Error (resources) where there is none.
   static void require();
