@@ -9,7 +9,8 @@ target_compile_options(firn_options INTERFACE
   $<$<BOOL:${FIRN_WERROR}>:-Werror>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # False alarms of g++ 12 about sums of std::string (its bugs 105329 and 105651).
-  target_compile_options(firn_options INTERFACE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow)
+  target_compile_options(firn_options INTERFACE 
+    -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
 
 # Highway 1.0.3 falls back to one-lane SCALAR code on plain x86-64. SSE4 (every x86-64 processor since 2008) is the
