@@ -9,7 +9,7 @@ target_compile_options(firn_options INTERFACE
   $<$<BOOL:${FIRN_WERROR}>:-Werror>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # False alarms of g++ 12 about sums of std::string (its bugs 105329 and 105651).
-  target_compile_options(firn_options INTERFACE 
+  target_compile_options(firn_options INTERFACE
     -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
 

@@ -1,5 +1,7 @@
 #include "apps/run_program.h"
 
+#include <regex>
+
 namespace firn::test {
 namespace {
 
