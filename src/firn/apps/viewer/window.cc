@@ -258,6 +258,7 @@ void ViewerWindow::draw() {
   s.record(fresh);
   s.notes.frame_milliseconds = 1e3 * (s.times.draw + (fresh ? s.times.upload : 0));
   s.wanted_draws = std::max(s.wanted_draws - 1, 0);
+  ++s.pictures_drawn;
   glfwSwapBuffers(s.display.window());
 }
 

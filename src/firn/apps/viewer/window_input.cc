@@ -90,10 +90,12 @@ void ViewerWindow::State::click() {
   if (controls->picked().kind != Picked::Kind::nothing && panel.side) panel.tab = "Picked";
 }
 
-void ViewerWindow::State::notice_double_click(double now) {
-  double_clicked = now - last_press < options.double_click &&
-                   std::hypot(cursor[0] - pressed_at[0], cursor[1] - pressed_at[1]) < kClickReach;
-  last_press = double_clicked ? -1e9 : now;
+/// Presses with no more than one picture between them belong together, however long that picture took.
+void ViewerWindow::State::notice_double_click(const Input& press) {
+  const bool soon = last_press && (press.time - last_press->time < options.double_click ||
+                                   press.pictures - last_press->pictures <= 1);
+  double_clicked = soon && std::hypot(cursor[0] - pressed_at[0], cursor[1] - pressed_at[1]) < kClickReach;
+  last_press = double_clicked ? std::nullopt : std::optional(press);
   pressed_at[0] = cursor[0];
   pressed_at[1] = cursor[1];
 }
@@ -105,7 +107,7 @@ void ViewerWindow::State::take_button(const Input& input) {
   down[static_cast<std::size_t>(button)] = pressed;
   shift = (mods & GLFW_MOD_SHIFT) != 0;
   if (on_start_page()) {
-    if (pressed && button == GLFW_MOUSE_BUTTON_LEFT) notice_double_click(input.time);
+    if (pressed && button == GLFW_MOUSE_BUTTON_LEFT) notice_double_click(input);
     return;
   }
   const bool free = !ImGui::GetIO().WantCaptureMouse;
@@ -189,6 +191,7 @@ void ViewerWindow::State::take_inputs() {
 
 void ViewerWindow::State::queue(Input input) {
   input.time = glfwGetTime();
+  input.pictures = pictures_drawn;
   inputs.push_back(input);
   wanted_draws = kDrawsPerEvent;
 }

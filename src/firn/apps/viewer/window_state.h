@@ -14,6 +14,7 @@
 #include <firn/apps/viewer/window_display.h>
 
 #include <array>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -34,7 +35,8 @@ struct ViewerWindow::State {
     Kind kind;
     int code = 0, scancode = 0, action = 0, mods = 0;
     double x = 0, y = 0;
-    double time = 0;  ///< s of GLFW's clock
+    double time = 0;            ///< s of GLFW's clock, when it was heard of
+    std::int64_t pictures = 0;  ///< drawn until then
   };
 
   explicit State(const Options& wanted);
@@ -57,7 +59,7 @@ struct ViewerWindow::State {
   void take_button(const Input& input);
   void take_cursor(double x, double y);
   void click();
-  void notice_double_click(double now);
+  void notice_double_click(const Input& press);
   bool on_start_page() const { return controls == nullptr; }
 
   const Options options;
@@ -79,8 +81,9 @@ struct ViewerWindow::State {
   std::optional<double> last_draw;  // s of GLFW's clock
   double cursor[2] = {-1, -1}, pressed_at[2] = {-1, -1};
   std::array<bool, kButtons> down = {};
-  std::deque<Input> inputs;  // that no picture has been drawn after
-  double last_press = -1e9;  // of the left button on the start page, s of GLFW's clock
+  std::deque<Input> inputs;         // that no picture has been drawn after
+  std::optional<Input> last_press;  // of the left button on the start page, unless it was the second one of two
+  std::int64_t pictures_drawn = 0;
   bool double_clicked = false;
   bool shift = false;
   bool dragging = false;
