@@ -284,6 +284,31 @@ TEST_F(WindowModes, RunsToTheFrameThatIsTyped) {
   EXPECT_EQ(controls().source().status().frame.frame, 3);
 }
 
+TEST_F(WindowModes, ClicksBetweenTwoPicturesAreTakenOneByOne) {
+  const auto middle = [&](const std::string& item) {
+    const auto& rect = window_->panel().items.at(item);
+    return std::pair(static_cast<int>(0.5F * (rect[0] + rect[2])), static_cast<int>(0.5F * (rect[1] + rect[3])));
+  };
+  press(*window_, "Tab");
+  click(*window_, "tab View");
+  const test::WindowEvents events;
+  // A click, another one elsewhere, a drag in the picture, and a notch of the wheel, while no picture is drawn.
+  for (const auto& [x, y] : {middle("perspective"), middle("clip plane")}) {
+    events.move(x, y);
+    for (const bool down : {true, false}) events.button(kLeft, down, x, y);
+  }
+  const Vec3d before = controls().camera().camera().position;
+  events.move(200, 400);
+  events.button(kLeft, true, 200, 400);
+  events.move(260, 400);
+  events.button(kLeft, false, 260, 400);
+  for (int i = 0; i < 12; ++i) window_->draw();
+  EXPECT_TRUE(controls().camera().orthographic());
+  EXPECT_TRUE(controls().clip.on);
+  EXPECT_GT(norm(controls().camera().camera().position - before), 0.1) << "orbited";
+  EXPECT_EQ(controls().picked().kind, Picked::Kind::nothing) << "the drag was no click";
+}
+
 TEST_F(WindowModes, TheStartPageOpensASceneByDoubleClick) {
   window_.reset();
   player_.reset();
@@ -324,7 +349,7 @@ TEST_F(WindowModes, TheStartPageOpensASceneByDoubleClick) {
   const int x = static_cast<int>(0.5F * (clay[0] + clay[2])), y = static_cast<int>(0.5F * (clay[1] + clay[3]));
   move(*window_, x, y);
   for (const bool down : {true, false, true, false}) test::WindowEvents().button(kLeft, down, x, y);
-  for (int i = 0; i < 4 && !window_->has_scene(); ++i) window_->draw();
+  for (int i = 0; i < 6 && !window_->has_scene(); ++i) window_->draw();
   EXPECT_EQ(opened.stem(), "clay");
   ASSERT_TRUE(window_->has_scene());
   ASSERT_TRUE(paused_at(*window_, 1));

@@ -151,7 +151,7 @@ void ViewerWindow::State::draw_interface() {
   // The backend asks the system where the mouse is; here the events tell, also those of tests.
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = {static_cast<float>(cursor[0]), static_cast<float>(cursor[1])};
-  for (std::size_t b = 0; b < kButtons; ++b) io.MouseDown[b] = down[b] || std::exchange(clicked[b], false);
+  for (std::size_t b = 0; b < kButtons; ++b) io.MouseDown[b] = down[b];
   ImGui::NewFrame();
   std::optional<std::filesystem::path> opened;
   if (on_start_page()) {
@@ -245,6 +245,7 @@ bool ViewerWindow::State::update_scene(double seconds) {
 void ViewerWindow::draw() {
   State& s = *state_;
   glfwPollEvents();
+  s.take_inputs();
   s.serve();
   const double now = glfwGetTime(), start = processor_seconds();
   const bool fresh = !s.on_start_page() && s.update_scene(s.last_draw ? now - *s.last_draw : 0);
@@ -257,6 +258,7 @@ void ViewerWindow::draw() {
   s.record(fresh);
   s.notes.frame_milliseconds = 1e3 * (s.times.draw + (fresh ? s.times.upload : 0));
   s.wanted_draws = std::max(s.wanted_draws - 1, 0);
+  ++s.pictures_drawn;
   glfwSwapBuffers(s.display.window());
 }
 

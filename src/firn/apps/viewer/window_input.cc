@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace firn {
 namespace {
@@ -68,26 +69,19 @@ bool ViewerWindow::State::key_of_window(int key, int mods) {
   }
 }
 
-void ViewerWindow::on_key(int key, int scancode, int action, int mods) {
-  State& s = *state_;
-  s.wanted_draws = State::kDrawsPerEvent;
-  ImGui_ImplGlfw_KeyCallback(s.display.window(), key, scancode, action, mods);
-  if (action == GLFW_RELEASE || s.on_start_page()) return;
+void ViewerWindow::State::take_key(int key, int scancode, int action, int mods) {
+  ImGui_ImplGlfw_KeyCallback(display.window(), key, scancode, action, mods);
+  if (action == GLFW_RELEASE || on_start_page()) return;
   if (ImGui::GetIO().WantTextInput && key != GLFW_KEY_ESCAPE) return;
   // Stepping may repeat while the key is held; anything else toggles or begins anew.
   if (action == GLFW_REPEAT && key != GLFW_KEY_PERIOD) return;
-  if (s.key_of_window(key, mods)) return;
+  if (key_of_window(key, mods)) return;
   constexpr std::pair<int, char> kKeys[] = {
       {GLFW_KEY_SPACE, ' '}, {GLFW_KEY_PERIOD, '.'}, {GLFW_KEY_R, 'r'}, {GLFW_KEY_F, 'f'}, {GLFW_KEY_P, 'p'},
       {GLFW_KEY_1, '1'},     {GLFW_KEY_2, '2'},      {GLFW_KEY_3, '3'}, {GLFW_KEY_G, 'g'}, {GLFW_KEY_C, 'c'}};
   for (const auto& [number, character] : kKeys) {
-    if (number == key) s.controls->key(character);
+    if (number == key) controls->key(character);
   }
-}
-
-void ViewerWindow::on_character(unsigned code) {
-  state_->wanted_draws = State::kDrawsPerEvent;
-  ImGui_ImplGlfw_CharCallback(state_->display.window(), code);
 }
 
 /// A button that was pressed and released without moving the mouse.
@@ -96,68 +90,130 @@ void ViewerWindow::State::click() {
   if (controls->picked().kind != Picked::Kind::nothing && panel.side) panel.tab = "Picked";
 }
 
-void ViewerWindow::State::notice_double_click() {
-  const double now = glfwGetTime();
-  double_clicked = now - last_press < options.double_click &&
-                   std::hypot(cursor[0] - pressed_at[0], cursor[1] - pressed_at[1]) < kClickReach;
-  last_press = double_clicked ? -1e9 : now;
+/// Presses with no more than one picture between them belong together, however long that picture took.
+void ViewerWindow::State::notice_double_click(const Input& press) {
+  const bool soon = last_press && (press.time - last_press->time < options.double_click ||
+                                   press.pictures - last_press->pictures <= 1);
+  double_clicked = soon && std::hypot(cursor[0] - pressed_at[0], cursor[1] - pressed_at[1]) < kClickReach;
+  last_press = double_clicked ? std::nullopt : std::optional(press);
   pressed_at[0] = cursor[0];
   pressed_at[1] = cursor[1];
 }
 
-void ViewerWindow::on_button(int button, int action, int mods) {
-  State& s = *state_;
-  s.wanted_draws = State::kDrawsPerEvent;
-  if (button < 0 || button >= static_cast<int>(State::kButtons)) return;
-  const bool pressed = action == GLFW_PRESS;
-  s.down[static_cast<std::size_t>(button)] = pressed;
-  if (pressed) s.clicked[static_cast<std::size_t>(button)] = true;
-  s.shift = (mods & GLFW_MOD_SHIFT) != 0;
-  if (s.on_start_page()) {
-    if (pressed && button == GLFW_MOUSE_BUTTON_LEFT) s.notice_double_click();
+void ViewerWindow::State::take_button(const Input& input) {
+  const int button = input.code, mods = input.mods;
+  if (button < 0 || button >= static_cast<int>(kButtons)) return;
+  const bool pressed = input.action == GLFW_PRESS;
+  down[static_cast<std::size_t>(button)] = pressed;
+  shift = (mods & GLFW_MOD_SHIFT) != 0;
+  if (on_start_page()) {
+    if (pressed && button == GLFW_MOUSE_BUTTON_LEFT) notice_double_click(input);
     return;
   }
   const bool free = !ImGui::GetIO().WantCaptureMouse;
   const bool left = button == GLFW_MOUSE_BUTTON_LEFT;
   if (pressed && free) {
-    s.pressed_at[0] = s.cursor[0];
-    s.pressed_at[1] = s.cursor[1];
-    if (left && (mods & GLFW_MOD_CONTROL) != 0 && s.controls->begin_grab(s.place())) return;
+    pressed_at[0] = cursor[0];
+    pressed_at[1] = cursor[1];
+    if (left && (mods & GLFW_MOD_CONTROL) != 0 && controls->begin_grab(place())) return;
   }
-  if (!pressed && left && s.controls->grabbed()) {
-    s.controls->end_grab();
+  if (!pressed && left && controls->grabbed()) {
+    controls->end_grab();
     return;
   }
-  if (!pressed && left && s.dragging &&
-      std::hypot(s.cursor[0] - s.pressed_at[0], s.cursor[1] - s.pressed_at[1]) < kClickReach) {
-    s.click();
+  if (!pressed && left && dragging && std::hypot(cursor[0] - pressed_at[0], cursor[1] - pressed_at[1]) < kClickReach) {
+    click();
   }
-  const bool any = std::find(s.down.begin(), s.down.end(), true) != s.down.end();
-  s.dragging = any && (s.dragging || free);
+  const bool any = std::find(down.begin(), down.end(), true) != down.end();
+  dragging = any && (dragging || free);
+}
+
+void ViewerWindow::State::take_cursor(double x, double y) {
+  const double dx = x - cursor[0], dy = y - cursor[1];
+  cursor[0] = x;
+  cursor[1] = y;
+  if (on_start_page()) return;
+  if (controls->grabbed()) {
+    controls->move_grab(place());
+    return;
+  }
+  if (!dragging) return;
+  int width = 0, height = 0;
+  glfwGetWindowSize(display.window(), &width, &height);
+  const auto kind = down[GLFW_MOUSE_BUTTON_LEFT] && !shift ? ViewControls::Drag::orbit : ViewControls::Drag::pan;
+  controls->drag(kind, dx / std::max(height, 1), -dy / std::max(height, 1));
+}
+
+void ViewerWindow::State::take(const Input& input) {
+  switch (input.kind) {
+    case Input::Kind::key:
+      take_key(input.code, input.scancode, input.action, input.mods);
+      break;
+    case Input::Kind::character:
+      ImGui_ImplGlfw_CharCallback(display.window(), static_cast<unsigned>(input.code));
+      break;
+    case Input::Kind::button:
+      take_button(input);
+      break;
+    case Input::Kind::cursor:
+      take_cursor(input.x, input.y);
+      break;
+    case Input::Kind::scroll:
+      ImGui_ImplGlfw_ScrollCallback(display.window(), input.x, input.y);
+      if (!on_start_page() && !ImGui::GetIO().WantCaptureMouse) controls->scroll(input.y);
+      break;
+  }
+}
+
+/// Dear ImGui sees the mouse and named keys (Enter, not letters) as they are in a picture, and tells with one picture
+/// what the mouse is over. Where pictures take long, several clicks may have come since the last one; taken together
+/// they would be one, in the wrong place.
+void ViewerWindow::State::take_inputs() {
+  constexpr int kFirstNamedKey = 256;  // of GLFW
+  bool moved = false, clicked = false;
+  std::vector<int> keys;
+  while (!inputs.empty()) {
+    const Input input = inputs.front();
+    const bool is_move = input.kind == Input::Kind::cursor, is_button = input.kind == Input::Kind::button;
+    const bool is_mouse = is_move || is_button || input.kind == Input::Kind::scroll;
+    if (is_mouse && (clicked || (moved && !is_move))) break;
+    if (input.kind == Input::Kind::key && input.code >= kFirstNamedKey) {
+      if (std::find(keys.begin(), keys.end(), input.code) != keys.end()) break;
+      keys.push_back(input.code);
+    }
+    moved = moved || is_move;
+    clicked = clicked || is_button;
+    inputs.pop_front();
+    take(input);
+  }
+  if (!inputs.empty()) wanted_draws = kDrawsPerEvent;
+}
+
+void ViewerWindow::State::queue(Input input) {
+  input.time = glfwGetTime();
+  input.pictures = pictures_drawn;
+  inputs.push_back(input);
+  wanted_draws = kDrawsPerEvent;
+}
+
+void ViewerWindow::on_key(int key, int scancode, int action, int mods) {
+  state_->queue({.kind = State::Input::Kind::key, .code = key, .scancode = scancode, .action = action, .mods = mods});
+}
+
+void ViewerWindow::on_character(unsigned code) {
+  state_->queue({.kind = State::Input::Kind::character, .code = static_cast<int>(code)});
+}
+
+void ViewerWindow::on_button(int button, int action, int mods) {
+  state_->queue({.kind = State::Input::Kind::button, .code = button, .action = action, .mods = mods});
 }
 
 void ViewerWindow::on_cursor(double x, double y) {
-  State& s = *state_;
-  const double dx = x - s.cursor[0], dy = y - s.cursor[1];
-  s.cursor[0] = x;
-  s.cursor[1] = y;
-  s.wanted_draws = State::kDrawsPerEvent;
-  if (s.on_start_page()) return;
-  if (s.controls->grabbed()) {
-    s.controls->move_grab(s.place());
-    return;
-  }
-  if (!s.dragging) return;
-  int width = 0, height = 0;
-  glfwGetWindowSize(s.display.window(), &width, &height);
-  const auto kind = s.down[GLFW_MOUSE_BUTTON_LEFT] && !s.shift ? ViewControls::Drag::orbit : ViewControls::Drag::pan;
-  s.controls->drag(kind, dx / std::max(height, 1), -dy / std::max(height, 1));
+  state_->queue({.kind = State::Input::Kind::cursor, .x = x, .y = y});
 }
 
 void ViewerWindow::on_scroll(double dx, double dy) {
-  state_->wanted_draws = State::kDrawsPerEvent;
-  ImGui_ImplGlfw_ScrollCallback(state_->display.window(), dx, dy);
-  if (!state_->on_start_page() && !ImGui::GetIO().WantCaptureMouse) state_->controls->scroll(dy);
+  state_->queue({.kind = State::Input::Kind::scroll, .x = dx, .y = dy});
 }
 
 }  // namespace firn

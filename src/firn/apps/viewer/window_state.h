@@ -14,6 +14,8 @@
 #include <firn/apps/viewer/window_display.h>
 
 #include <array>
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -26,6 +28,16 @@ struct ViewerWindow::State {
   static constexpr std::size_t kButtons = 3;
   /// Dear ImGui takes a picture or two to lay out what an event has opened.
   static constexpr int kDrawsPerEvent = 3;
+
+  /// What GLFW has told.
+  struct Input {
+    enum class Kind { key, character, button, cursor, scroll };
+    Kind kind;
+    int code = 0, scancode = 0, action = 0, mods = 0;
+    double x = 0, y = 0;
+    double time = 0;            ///< s of GLFW's clock, when it was heard of
+    std::int64_t pictures = 0;  ///< drawn until then
+  };
 
   explicit State(const Options& wanted);
 
@@ -40,8 +52,14 @@ struct ViewerWindow::State {
   void record(bool fresh);
   void guarded(const std::function<void()>& work);
   bool key_of_window(int key, int mods);
+  void queue(Input input);
+  void take_inputs();
+  void take(const Input& input);
+  void take_key(int key, int scancode, int action, int mods);
+  void take_button(const Input& input);
+  void take_cursor(double x, double y);
   void click();
-  void notice_double_click();
+  void notice_double_click(const Input& press);
   bool on_start_page() const { return controls == nullptr; }
 
   const Options options;
@@ -62,8 +80,10 @@ struct ViewerWindow::State {
   Image picture;
   std::optional<double> last_draw;  // s of GLFW's clock
   double cursor[2] = {-1, -1}, pressed_at[2] = {-1, -1};
-  std::array<bool, kButtons> down = {}, clicked = {};  // clicked: pressed since the last picture, perhaps released
-  double last_press = -1e9;                            // of the left button on the start page, s of GLFW's clock
+  std::array<bool, kButtons> down = {};
+  std::deque<Input> inputs;         // that no picture has been drawn after
+  std::optional<Input> last_press;  // of the left button on the start page, unless it was the second one of two
+  std::int64_t pictures_drawn = 0;
   bool double_clicked = false;
   bool shift = false;
   bool dragging = false;
