@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "viewer/fake_simulation.h"
+#include "viewer/still_source.h"
 
 namespace firn {
 namespace {
@@ -265,7 +266,7 @@ TEST_F(Meshing, EndsWhileSomethingIsWanted) {
 }
 
 /// A source that has one frame.
-class OneFrame final : public FrameSource {
+class OneFrame final : public test::StillSource {
  public:
   explicit OneFrame(const Snapshot& snapshot) {
     snapshot_ = std::make_shared<const Snapshot>(snapshot);
@@ -273,12 +274,6 @@ class OneFrame final : public FrameSource {
     status_.frame.frame = 7;
     status_.state = PlayState::paused;
   }
-  void play() override {}
-  void pause() override {}
-  void step() override {}
-  void reset() override {}
-  void run_to(std::int64_t) override {}
-  void seek(std::int64_t) override {}
 };
 
 TEST(SurfaceView, IsMadeWhenItIsToBeSeen) {

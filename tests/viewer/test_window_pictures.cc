@@ -3,6 +3,7 @@
 
 #include "support/record.h"
 #include "viewer/reference_picture.h"
+#include "viewer/still_source.h"
 #include "viewer/window_fixture.h"
 
 namespace firn {
@@ -37,18 +38,12 @@ TEST_F(Window, LooksAsItDid) {
 }
 
 /// Shows two frames in turn, so that neither is what the processor has just read.
-class TwoFrames final : public FrameSource {
+class TwoFrames final : public test::StillSource {
  public:
   TwoFrames(std::size_t particles, bool doubles) {
     for (auto& frame : frames_) frame = make(particles, doubles);
     next();
   }
-  void play() override {}
-  void pause() override {}
-  void step() override {}
-  void reset() override {}
-  void run_to(std::int64_t) override {}
-  void seek(std::int64_t) override {}
   void next() {
     const std::lock_guard lock(mutex_);
     snapshot_ = frames_[status_.published++ % 2];
