@@ -41,6 +41,7 @@ PROVIDERS = {
     "cstdio": "FILE size_t",
     "cstdlib": "abs free size_t",
     "cstring": "memcpy size_t",
+    "deque": "deque size_t",
     "exception": "exception_ptr",
     "filesystem": "filesystem",
     "functional": "function reference_wrapper",
