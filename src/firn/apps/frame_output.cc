@@ -195,18 +195,23 @@ FrameOutput::~FrameOutput() {
   if (thread_.joinable()) thread_.join();
 }
 
-void FrameOutput::wait_for_room() {
+void FrameOutput::wait_until_empty(std::unique_lock<std::mutex>& lock) {
   const auto start = std::chrono::steady_clock::now();
-  std::unique_lock lock(mutex_);
   // Pictures that a resumed run's film begins with hold no frame.
   changed_.wait(lock, [&] { return (!next_ && !holds_frame_) || failure_ != nullptr; });
   cost_.waiting += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (failure_ != nullptr) std::rethrow_exception(failure_);
 }
 
+Snapshot FrameOutput::wait_for_room() {
+  std::unique_lock lock(mutex_);
+  wait_until_empty(lock);
+  return std::exchange(spare_, {});
+}
+
 void FrameOutput::submit(FinishedFrame frame) {
-  wait_for_room();
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
+  wait_until_empty(lock);
   next_ = std::move(frame);
   changed_.notify_all();
 }
@@ -260,8 +265,8 @@ void FrameOutput::work() {
     } catch (...) {
       failure = std::current_exception();
     }
-    frame.reset();
     const std::lock_guard lock(mutex_);
+    if (frame) spare_ = std::move(frame->snapshot);
     busy_ = holds_frame_ = false;
     if (failure != nullptr) failure_ = failure;
     changed_.notify_all();

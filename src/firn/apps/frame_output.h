@@ -50,9 +50,9 @@ class FrameOutput {
   FrameOutput(const FrameOutput&) = delete;
   FrameOutput& operator=(const FrameOutput&) = delete;
 
-  /// Waits until the frame before is on the disk. Before the next is copied, so that there is only one copy in memory.
-  /// Throws what went wrong with it.
-  void wait_for_room();
+  /// Waits until the frame before is on the disk, and gives its memory back for the next: so there is only one copy of
+  /// the particles. Throws what went wrong with it.
+  Snapshot wait_for_room();
 
   /// Hands a frame over. Throws what went wrong with an earlier one.
   void submit(FinishedFrame frame);
@@ -70,6 +70,7 @@ class FrameOutput {
   OutputCost cost() const;
 
  private:
+  void wait_until_empty(std::unique_lock<std::mutex>& lock);
   void work();
   void write(const FinishedFrame& frame);
   void note_written(std::int64_t frame, double seconds);
@@ -90,6 +91,7 @@ class FrameOutput {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<FinishedFrame> next_;
+  Snapshot spare_;
   bool busy_ = true, holds_frame_ = false, closing_ = false;
   std::int64_t written_ = 0;
   OutputCost cost_;

@@ -80,9 +80,9 @@ class FrameLoop {
   }
 
   void hand_over(const FrameReport& report) {
-    output_.wait_for_room();
+    Snapshot memory = output_.wait_for_room();
     const auto start = std::chrono::steady_clock::now();
-    Snapshot snapshot = job_.simulation.snapshot();
+    Snapshot snapshot = job_.simulation.snapshot(std::move(memory));
     copying_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     output_.submit({std::move(snapshot), report, job_.simulation.totals(), probe_rows(job_.simulation)});
     print_line(progress_.line(report));

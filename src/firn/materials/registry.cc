@@ -75,15 +75,18 @@ double energy_of(int model, ModelList<Models...>, const ModelParameters& paramet
   return kFunctions[static_cast<std::size_t>(model)](parameters, F, history);
 }
 
+template <template <class> class Model>
+void volume_ratios_of(const ModelParameters& parameters, std::size_t count, const double* history, double* J) {
+  const Model<double> model(parameters);
+  for (std::size_t p = 0; p < count; ++p) J[p] = model.volume_ratio(J[p], history + p * kMaxHistoryColumns);
+}
+
 template <template <class> class... Models>
-double volume_ratio_of(int model, ModelList<Models...>, const ModelParameters& parameters, double J,
-                       const double* history) {
-  using Function = double (*)(const ModelParameters&, double, const double*);
-  static constexpr std::array<Function, sizeof...(Models)> kFunctions = {
-      +[](const ModelParameters& values, double ratio, const double* memory) {
-        return Models<double>(values).volume_ratio(ratio, memory);
-      }...};
-  return kFunctions[static_cast<std::size_t>(model)](parameters, J, history);
+void volume_ratios_of(int model, ModelList<Models...>, const ModelParameters& parameters, std::size_t count,
+                      const double* history, double* J) {
+  using Function = void (*)(const ModelParameters&, std::size_t, const double*, double*);
+  static constexpr std::array<Function, sizeof...(Models)> kFunctions = {&volume_ratios_of<Models>...};
+  kFunctions[static_cast<std::size_t>(model)](parameters, count, history, J);
 }
 
 }  // namespace
@@ -113,7 +116,11 @@ double energy_density(int model, const ModelParameters& parameters, const double
   return energy_of<dim>(model, AllModels(), parameters, F, history);
 }
 double volume_ratio(int model, const ModelParameters& parameters, double J, const double* history) {
-  return volume_ratio_of(model, AllModels(), parameters, J, history);
+  volume_ratios(model, parameters, 1, history, &J);
+  return J;
+}
+void volume_ratios(int model, const ModelParameters& parameters, std::size_t count, const double* history, double* J) {
+  volume_ratios_of(model, AllModels(), parameters, count, history, J);
 }
 template double energy_density<2>(int, const ModelParameters&, const double*, const double*);
 template double energy_density<3>(int, const ModelParameters&, const double*, const double*);

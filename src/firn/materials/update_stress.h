@@ -52,4 +52,7 @@ double energy_density(int model, const ModelParameters&, const double* F, const 
 /// the model stores none.
 double volume_ratio(int model, const ModelParameters&, double J, const double* history);
 
+/// The same of `count` particles: replaces their J. The history has kMaxHistoryColumns values for each of them.
+void volume_ratios(int model, const ModelParameters&, std::size_t count, const double* history, double* J);
+
 }  // namespace firn

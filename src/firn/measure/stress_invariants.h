@@ -11,16 +11,21 @@ struct Stress {
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 };
 
-/// Kirchhoff stress of a particle, with the out-of-plane component in 2D.
-template <class Real, int dim>
-Stress kirchhoff_stress(const Particles<Real, dim>& particles, std::size_t p) {
-  const auto component = [&](int c) { return static_cast<double>(particles.real(Field::stress, c)[p]); };
+/// From stored components, component(c): with the out-of-plane one in 2D.
+template <int dim, class Component>
+Stress stress_of(const Component& component) {
   Stress s = {component(0), component(1), component(2), component(3), 0, 0};
   if constexpr (dim == 3) {
     s.xz = component(4);
     s.yz = component(5);
   }
   return s;
+}
+
+/// Kirchhoff stress of a particle.
+template <class Real, int dim>
+Stress kirchhoff_stress(const Particles<Real, dim>& particles, std::size_t p) {
+  return stress_of<dim>([&](int c) { return static_cast<double>(particles.real(Field::stress, c)[p]); });
 }
 
 /// Minus a third of the trace: positive in compression.

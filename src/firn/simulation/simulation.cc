@@ -179,9 +179,9 @@ class SimulationOf final : public Simulation {
     paused_->next.limit = limit_name_;
   }
 
-  Snapshot snapshot() const override {
+  Snapshot snapshot(Snapshot memory) const override {
     Snapshot snapshot;
-    arena_.execute([&] { snapshot = snapshot_of<Real, dim>(*world_, scene_, plan_); });
+    arena_.execute([&] { snapshot = snapshot_of<Real, dim>(*world_, scene_, plan_, std::move(memory)); });
     return snapshot;
   }
 

@@ -109,7 +109,9 @@ class Simulation {
   /// The report of the frame that the simulation stands at.
   virtual FrameReport report() const = 0;
 
-  virtual Snapshot snapshot() const = 0;
+  Snapshot snapshot() const { return snapshot({}); }
+  /// The same in the memory of another, which is much faster; what that held is gone.
+  virtual Snapshot snapshot(Snapshot memory) const = 0;
   virtual Totals totals() const = 0;
 
   /// Goes on with another scene, between two frames. Only what is_all_live() lists may differ; what is new begins now.

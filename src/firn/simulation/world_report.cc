@@ -7,16 +7,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace firn {
 
 template <class Real, int dim>
-Snapshot snapshot_of(const World<Real, dim>& world, const Scene& scene, const WorldPlan& plan) {
-  Snapshot snapshot;
+Snapshot snapshot_of(const World<Real, dim>& world, const Scene& scene, const WorldPlan& plan, Snapshot memory) {
+  Snapshot snapshot = std::move(memory);
   snapshot.dimension = dim;
   snapshot.time = world.t;
   snapshot.cell_size = world.grid.dx();
+  snapshot.bodies.clear();
   for (const BodySettings& body : scene.bodies) snapshot.bodies.push_back(body.name);
   for (const EmitterSettings& emitter : scene.emitters) snapshot.bodies.push_back(emitter.name);
   double smallest = scene.emitters.empty() ? 0 : plan.particle_volume;
@@ -26,13 +28,13 @@ Snapshot snapshot_of(const World<Real, dim>& world, const Scene& scene, const Wo
   }
   snapshot.particle_spacing = std::pow(smallest, 1.0 / dim);
   const std::vector<Parameter> varied = varied_parameters(scene);
+  std::vector<OutputMaterial<Real, dim>> materials;
   for (std::size_t m = 0; m < world.materials.size(); ++m) {
     const auto& material = world.materials[m];
-    const MaterialSettings& settings = scene.materials[m];
-    append_to_snapshot<Real, dim>(snapshot, material.particles, material.model, material.parameters,
-                                  {material.name, settings.model, settings.preset, varied}, world.grid.dx(),
-                                  world.transfer.kernel);
+    materials.push_back(
+        {material.particles, material.model, material.parameters, material.name, scene.materials[m].preset});
   }
+  fill_snapshot<Real, dim>(snapshot, materials, {world.grid.dx(), world.transfer.kernel, varied});
   return snapshot;
 }
 
@@ -94,11 +96,11 @@ std::vector<ColliderReport> reports_of_colliders(const World<Real, dim>& world, 
   return reports;
 }
 
-#define FIRN_INSTANTIATE(Real, dim)                                                                          \
-  template Snapshot snapshot_of<Real, dim>(const World<Real, dim>&, const Scene&, const WorldPlan&);         \
-  template std::string failure_text<Real, dim>(const World<Real, dim>&, const ParticleFailure&, double);     \
-  template Totals totals_of<Real, dim>(const World<Real, dim>&);                                             \
-  template std::vector<ProbeValue> probe_values<Real, dim>(const World<Real, dim>&, std::span<const Vec3d>); \
+#define FIRN_INSTANTIATE(Real, dim)                                                                            \
+  template Snapshot snapshot_of<Real, dim>(const World<Real, dim>&, const Scene&, const WorldPlan&, Snapshot); \
+  template std::string failure_text<Real, dim>(const World<Real, dim>&, const ParticleFailure&, double);       \
+  template Totals totals_of<Real, dim>(const World<Real, dim>&);                                               \
+  template std::vector<ProbeValue> probe_values<Real, dim>(const World<Real, dim>&, std::span<const Vec3d>);   \
   template std::vector<ColliderReport> reports_of_colliders<Real, dim>(const World<Real, dim>&, std::size_t, double);
 FIRN_INSTANTIATE(float, 2)
 FIRN_INSTANTIATE(float, 3)

@@ -17,9 +17,9 @@
 /// What a simulation tells of its world. Call these in the arena of the simulation.
 namespace firn {
 
-/// A copy of all particles.
+/// A copy of all particles, in the memory of a snapshot that is not needed any more.
 template <class Real, int dim>
-Snapshot snapshot_of(const World<Real, dim>& world, const Scene& scene, const WorldPlan& plan);
+Snapshot snapshot_of(const World<Real, dim>& world, const Scene& scene, const WorldPlan& plan, Snapshot memory);
 
 /// One line: step, time, particle, its F, J and speed, the likely cause and what to change. @param dt of that step, s
 template <class Real, int dim>

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace firn {
 
@@ -17,19 +18,22 @@ struct Components {
   explicit operator bool() const { return first != nullptr; }
 };
 
-/// Consecutive particles of one block as plain arrays, for the loops of a step. A whole SIMD vector may be read from
-/// the last particle on.
+/// Consecutive particles of one block as plain arrays, for the loops of a step; read only if Real is const. A whole
+/// SIMD vector may be read from the last particle on.
 template <class Real, int dim>
 struct ParticleColumns {
+  template <class T>
+  using Number = std::conditional_t<std::is_const_v<Real>, const T, T>;
+
   Components<Real> offset, strain, velocity, affine, stress, grad_v, acceleration, history;
   Real* rest_volume;
-  std::uint32_t* id;
-  std::uint16_t* body;
-  std::uint8_t* cell;
-  Real density = 0;  ///< rho_0, kg/m^3 (kg/m^2 in 2D)
+  Number<std::uint32_t>* id;
+  Number<std::uint16_t>* body;
+  Number<std::uint8_t>* cell;
+  std::remove_const_t<Real> density = 0;  ///< rho_0, kg/m^3 (kg/m^2 in 2D)
 
   /// m_p, kg (kg/m in 2D)
-  Real mass(std::uint32_t p) const { return density * rest_volume[p]; }
+  std::remove_const_t<Real> mass(std::uint32_t p) const { return density * rest_volume[p]; }
   /// F's rate of change comes from grad v, or from C where both are the same.
   const Components<Real>& velocity_gradient() const { return grad_v ? grad_v : affine; }
 };

@@ -127,8 +127,7 @@ Vec<double, dim> Particles<Real, dim>::position(std::size_t p, double dx, Kernel
   const Index<dim> at = cell_of_key<dim>(cell(p));
   Vec<double, dim> x;
   for (int d = 0; d < dim; ++d) {
-    x[d] = dx * (static_cast<double>(at[static_cast<std::size_t>(d)]) + cell_offset(kernel) +
-                 static_cast<double>(real(Field::offset, d)[p]));
+    x[d] = world_coordinate(at[static_cast<std::size_t>(d)], real(Field::offset, d)[p], dx, kernel);
   }
   return x;
 }

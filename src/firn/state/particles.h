@@ -65,6 +65,8 @@ class Particles {
 
   std::size_t size() const { return first_.back(); }
   const ParticleLayout& layout() const { return layout_; }
+  /// Whether every particle is in the block that it lies in, as between steps.
+  bool is_sorted() const { return new_.empty(); }
   bool has(Field field) const { return layout_.field[static_cast<std::size_t>(field)] >= 0; }
   int component_count(Field field) const { return layout_.components[static_cast<std::size_t>(field)]; }
 
@@ -129,6 +131,15 @@ class Particles {
       body(columns(b, first), first, std::min<std::uint32_t>(kChunk, particles - first));
     }
   }
+  template <class Body>
+  void for_each_chunk(std::size_t b, const Body& body) const {
+    const std::uint32_t particles = blocks_[b].count;
+    for (std::uint32_t first = 0; first < particles; first += kChunk) {
+      const ParticleStorage chunk = blocks_[b].chunk(first);
+      body(with_density(columns_of<const Real, dim>(layout_, chunk, 0, chunk, 0)), first,
+           std::min<std::uint32_t>(kChunk, particles - first));
+    }
+  }
   /// Asks for kept fields to be brought into cache: of p's chunk in block b, or if it ends before, of the next block.
   void prefetch_kept(std::size_t b, std::size_t p) const {
     if (p < blocks_[b].count) {
@@ -181,7 +192,8 @@ class Particles {
     const int width = field == Field::body ? 2 : field == Field::id ? 4 : layout_.real_bytes;
     return layout_.field[static_cast<std::size_t>(field)] + c * width;
   }
-  ParticleColumns<Real, dim> with_density(ParticleColumns<Real, dim> columns) const {
+  template <class Element>
+  ParticleColumns<Element, dim> with_density(ParticleColumns<Element, dim> columns) const {
     columns.density = static_cast<Real>(density_);
     return columns;
   }
@@ -201,6 +213,11 @@ class Particles {
   std::vector<Departure> departures_;      ///< scratch of route
   std::vector<Arrivals> arrivals_;
 };
+
+/// World coordinate along one axis of a particle that lies `offset` into a cell, m.
+inline double world_coordinate(std::int64_t cell, double offset, double dx, Kernel kernel) {
+  return dx * (static_cast<double>(cell) + cell_offset(kernel) + offset);
+}
 
 /// Cell and offset of world position x. Periodic axes are wrapped.
 template <class Real, int dim>
