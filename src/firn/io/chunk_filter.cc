@@ -11,12 +11,41 @@ constexpr int kLevel = 1;
 /// Bytes of a plane that are tried, and the share that must be saved for it to be worth the time.
 constexpr std::size_t kTried = 2048;
 constexpr double kWorthwhile = 0.25;
+/// For zlib: memory just large enough for what is tried, as it is cleared each time.
+constexpr int kTrialWindow = 12, kTrialMemory = 4;
 
 Bytef* bytes_of(std::byte* p) { return reinterpret_cast<Bytef*>(p); }
 Bytef* bytes_of(const std::byte* p) { return reinterpret_cast<Bytef*>(const_cast<std::byte*>(p)); }
 
 void require(int status) {
   if (status != Z_OK && status != Z_STREAM_END) throw Failure{"compress a part of the file"};
+}
+
+/// Byte i of every element to plane i. The size of an element is known when this is compiled, so that many are moved at
+/// once.
+template <std::size_t element>
+void shuffle(std::span<const std::byte> chunk, std::byte* planes) {
+  const std::size_t count = chunk.size() / element;
+  for (std::size_t i = 0; i < element; ++i, planes += count) {
+    for (std::size_t n = 0; n < count; ++n) planes[n] = chunk[n * element + i];
+  }
+}
+
+void shuffle(std::span<const std::byte> chunk, std::size_t element, std::byte* planes) {
+  switch (element) {
+    case 1:
+      return shuffle<1>(chunk, planes);
+    case 2:
+      return shuffle<2>(chunk, planes);
+    case 4:
+      return shuffle<4>(chunk, planes);
+    case 8:
+      return shuffle<8>(chunk, planes);
+  }
+  const std::size_t count = chunk.size() / element;
+  for (std::size_t i = 0; i < element; ++i, planes += count) {
+    for (std::size_t n = 0; n < count; ++n) planes[n] = chunk[n * element + i];
+  }
 }
 
 }  // namespace
@@ -27,7 +56,7 @@ struct ChunkFilter::Streams {
 
 ChunkFilter::ChunkFilter() : streams_(new Streams) {
   require(deflateInit(&streams_->all, kLevel));
-  require(deflateInit(&streams_->trial, kLevel));
+  require(deflateInit2(&streams_->trial, kLevel, Z_DEFLATED, kTrialWindow, kTrialMemory, Z_DEFAULT_STRATEGY));
 }
 
 ChunkFilter::~ChunkFilter() {
@@ -35,13 +64,13 @@ ChunkFilter::~ChunkFilter() {
   deflateEnd(&streams_->trial);
 }
 
-bool ChunkFilter::is_noise(const std::byte* plane, std::size_t size) {
-  const std::size_t tried = std::min(size, kTried);
+bool ChunkFilter::is_noise(std::span<const std::byte> plane) {
+  const std::size_t tried = std::min(plane.size(), kTried);
   z_stream& trial = streams_->trial;
   require(deflateReset(&trial));
   scratch_.resize(deflateBound(&trial, static_cast<uLong>(tried)));
   // From the middle: the first particles of a body may be special.
-  trial.next_in = bytes_of(plane + (size - tried) / 2);
+  trial.next_in = bytes_of(plane.data() + (plane.size() - tried) / 2);
   trial.avail_in = static_cast<uInt>(tried);
   trial.next_out = bytes_of(scratch_.data());
   trial.avail_out = static_cast<uInt>(scratch_.size());
@@ -57,9 +86,9 @@ void ChunkFilter::deflate_planes(std::size_t element, std::size_t plane) {
   stream.next_out = bytes_of(result_.data());
   stream.avail_out = static_cast<uInt>(result_.size());
   for (std::size_t i = 0; i < element; ++i) {
-    const std::byte* begin = shuffled_.data() + i * plane;
-    const int level = is_noise(begin, plane) ? 0 : kLevel;
-    stream.next_in = bytes_of(begin);
+    const std::span<const std::byte> bytes = std::span(shuffled_).subspan(i * plane, plane);
+    const int level = is_noise(bytes) ? 0 : kLevel;
+    stream.next_in = bytes_of(bytes.data());
     stream.avail_in = 0;
     require(deflateParams(&stream, level, Z_DEFAULT_STRATEGY));
     stream.avail_in = static_cast<uInt>(plane);
@@ -69,14 +98,9 @@ void ChunkFilter::deflate_planes(std::size_t element, std::size_t plane) {
 }
 
 const std::vector<std::byte>& ChunkFilter::apply(std::span<const std::byte> chunk, std::size_t element) {
-  const std::size_t plane = chunk.size() / element;
   shuffled_.resize(chunk.size());
-  for (std::size_t i = 0; i < element; ++i) {
-    std::byte* to = shuffled_.data() + i * plane;
-    const std::byte* from = chunk.data() + i;
-    for (std::size_t n = 0; n < plane; ++n) to[n] = from[n * element];
-  }
-  deflate_planes(element, plane);
+  shuffle(chunk, element, shuffled_.data());
+  deflate_planes(element, chunk.size() / element);
   std::uint32_t sum = fletcher32(result_);
   for (int i = 0; i < 4; ++i, sum >>= 8) result_.push_back(static_cast<std::byte>(sum & 0xff));
   return result_;

@@ -24,7 +24,7 @@ class ChunkFilter {
  private:
   struct Streams;
 
-  bool is_noise(const std::byte* plane, std::size_t size);
+  bool is_noise(std::span<const std::byte> plane);
   void deflate_planes(std::size_t element, std::size_t plane);
 
   std::unique_ptr<Streams> streams_;
