@@ -9,8 +9,8 @@ namespace {
 
 constexpr int kLevel = 1;
 /// Bytes of a plane that are tried, and the share that must be saved for it to be worth the time.
-constexpr std::size_t kTried = 2048;
-constexpr double kWorthwhile = 0.25;
+constexpr std::size_t kTried = 1024;
+constexpr double kWorthwhile = 0.5;
 /// For zlib: memory just large enough for what is tried, as it is cleared each time.
 constexpr int kTrialWindow = 12, kTrialMemory = 4;
 
