@@ -4,6 +4,7 @@
 #include <firn/io/frame_writer.h>
 #include <gtest/gtest.h>
 #include <io/frame_samples.h>
+#include <sys/stat.h>
 #include "support/temporary_folder.h"
 
 #include <cstdlib>
@@ -110,6 +111,14 @@ std::string error_of_velocity(const std::vector<hsize_t>& extents) {
         H5Dclose, "create");
   });
   return message_of([&] { parse_frame(bytes, "f.hdf"); });
+}
+
+TEST(Frame, FoldersAndPipesAreRefused) {
+  const TemporaryFolder folder;
+  EXPECT_NE(reading_error(folder.path()).find("it is a folder"), std::string::npos);
+  // Without a writer, to open it would never end.
+  ASSERT_EQ(::mkfifo((folder / "pipe.hdf").c_str(), 0600), 0);
+  EXPECT_NE(reading_error(folder / "pipe.hdf").find("it is no regular file"), std::string::npos);
 }
 
 // Found by the fuzz target `frame`.

@@ -74,7 +74,8 @@ class FakeSimulation final : public Simulation {
     report.time = time();
     return report;
   }
-  Snapshot snapshot() const override {
+  using Simulation::snapshot;
+  Snapshot snapshot(Snapshot /*memory*/) const override {
     Snapshot snapshot;
     snapshot.time = time();
     snapshot.particle_spacing = 0.1;

@@ -96,6 +96,8 @@ Json checkpoint_info(const fs::path& file) {
 
 bool begins_as_hdf5(const fs::path& path) {
   char bytes[8] = {};
+  // To open a pipe would wait for somebody to write.
+  if (std::error_code error; !fs::is_regular_file(path, error)) return false;
   std::ifstream(path, std::ios::binary).read(bytes, sizeof bytes);
   return std::string_view(bytes, sizeof bytes) == std::string_view("\x89HDF\r\n\x1a\n", 8);
 }

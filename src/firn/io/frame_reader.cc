@@ -125,8 +125,12 @@ Snapshot read_open_file(hid_t file, FrameMetadata* metadata) {
 
 /// Says itself what the system or the first bytes show, because HDF5 reports every cause as "unable to open".
 std::vector<std::byte> read_bytes(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path)) {
-    throw Error(ErrorKind::files, fmt::format("{}: cannot read the frame: it is a folder", path.string()));
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  // To open a pipe would wait for somebody to write.
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw Error(ErrorKind::files, fmt::format("{}: cannot read the frame: it is {}", path.string(),
+                                              std::filesystem::is_directory(status) ? "a folder" : "no regular file"));
   }
   std::ifstream stream(path, std::ios::binary | std::ios::ate);
   if (!stream) {
