@@ -29,9 +29,10 @@ DEFAULT_FLAGS = ["c++", "-std=c++20", "-Wall", "-Wextra", "-Werror"]
 
 # Headers of the standard library, and the names that our headers may take from each.
 PROVIDERS = {
-    "algorithm": "clamp copy_n equal fill fill_n find_if max max_element min ranges",
+    "algorithm": "clamp copy_n equal fill fill_n find_if lower_bound max max_element min ranges sort",
     "array": "array get size_t",
     "atomic": "atomic",
+    "bit": "popcount",
     "bitset": "bitset size_t",
     "chrono": "chrono",
     "cmath": "abs asinh atan ceil copysign exp fabs floor ilogb isfinite ldexp log lround pow signbit sin sqrt tan",
@@ -50,7 +51,7 @@ PROVIDERS = {
     "limits": "numeric_limits",
     "map": "map size_t",
     "memory": "make_unique shared_ptr unique_ptr size_t",
-    "mutex": "mutex",
+    "mutex": "mutex unique_lock",
     "new": "align_val_t size_t",
     "numbers": "numbers",
     "optional": "nullopt optional",
@@ -60,7 +61,7 @@ PROVIDERS = {
     "string": "begin end size size_t string to_string",
     "string_view": "begin end size size_t string_view",
     "thread": "thread",
-    "type_traits": "conditional_t is_enum_v is_integral_v is_invocable_v is_same_v is_trivially_copyable_v",
+    "type_traits": "conditional_t is_const_v is_enum_v is_integral_v is_invocable_v is_same_v is_trivially_copyable_v remove_const_t",
     "utility": "get move pair size_t",
     "variant": "get get_if variant",
     "vector": "begin end size size_t vector",

@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <new>
 
 namespace firn::hdf5 {
 namespace {
@@ -18,6 +19,7 @@ Bytef* bytes_of(std::byte* p) { return reinterpret_cast<Bytef*>(p); }
 Bytef* bytes_of(const std::byte* p) { return reinterpret_cast<Bytef*>(const_cast<std::byte*>(p)); }
 
 void require(int status) {
+  if (status == Z_MEM_ERROR) throw std::bad_alloc();
   if (status != Z_OK && status != Z_STREAM_END) throw Failure{"compress a part of the file"};
 }
 

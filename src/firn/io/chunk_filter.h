@@ -18,7 +18,7 @@ class ChunkFilter {
   ChunkFilter(const ChunkFilter&) = delete;
   ChunkFilter& operator=(const ChunkFilter&) = delete;
 
-  /// @param chunk whole elements of `element` bytes. Throws Failure (frame_hdf5.h) if there is no memory for zlib.
+  /// @param chunk whole elements of `element` bytes. Throws std::bad_alloc if there is no memory for zlib.
   const std::vector<std::byte>& apply(std::span<const std::byte> chunk, std::size_t element);
 
  private:

@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cstring>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -16,6 +17,7 @@ namespace {
 /// Memory of one file. HDF5's own buffer is not used: what lies between its blocks would be whatever the heap held.
 struct Buffer {
   std::vector<std::byte> bytes;
+  bool is_out_of_memory = false;  ///< HDF5 itself does not tell why it failed
 };
 
 void* allocate(std::size_t size, H5FD_file_image_op_t, void* data) try {
@@ -23,6 +25,7 @@ void* allocate(std::size_t size, H5FD_file_image_op_t, void* data) try {
   buffer->bytes.assign(size, std::byte{0});
   return buffer->bytes.data();
 } catch (const std::bad_alloc&) {
+  static_cast<Buffer*>(data)->is_out_of_memory = true;
   return nullptr;
 }
 
@@ -31,6 +34,7 @@ void* reallocate(void*, std::size_t size, H5FD_file_image_op_t, void* data) try 
   buffer->bytes.resize(size);
   return buffer->bytes.data();
 } catch (const std::bad_alloc&) {
+  static_cast<Buffer*>(data)->is_out_of_memory = true;
   return nullptr;
 }
 
@@ -66,8 +70,9 @@ std::array<std::byte, kTrailerSize> trailer(const std::byte* bytes, std::size_t 
 
 }  // namespace
 
-std::vector<std::byte> make_file(const std::function<void(hid_t file)>& fill) {
-  Buffer buffer;
+namespace {
+
+void make_file_in(Buffer& buffer, const std::function<void(hid_t file)>& fill) {
   H5FD_file_image_callbacks_t callbacks = {allocate, copy, reallocate, release, share, unshare, &buffer};
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "create a property list");
   check(H5Pset_fapl_core(access, kGrowth, false), "keep the file in memory");
@@ -87,6 +92,18 @@ std::vector<std::byte> make_file(const std::function<void(hid_t file)>& fill) {
   if (size < 0) throw Failure{"find the size of the file"};
   file.close_now("close the file");
   buffer.bytes.resize(static_cast<std::size_t>(size));
+}
+
+}  // namespace
+
+std::vector<std::byte> make_file(const std::function<void(hid_t file)>& fill) {
+  Buffer buffer;
+  try {
+    make_file_in(buffer, fill);
+  } catch (const Failure&) {
+    if (buffer.is_out_of_memory) throw std::bad_alloc();
+    throw;
+  }
   const auto end = trailer(buffer.bytes.data(), buffer.bytes.size());
   buffer.bytes.insert(buffer.bytes.end(), end.begin(), end.end());
   return std::move(buffer.bytes);

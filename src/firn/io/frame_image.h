@@ -13,6 +13,8 @@ namespace firn::hdf5 {
 /// the file stays open, and the library complains on stderr when the process ends. The memory is that of the compressed
 /// file. Unused space is zero, so that equal contents give equal bytes.
 ///
+/// Throws std::bad_alloc if there is no memory, and what `fill` throws.
+///
 /// A trailer of 16 bytes that HDF5 ignores ends the file: a magic word and the XXH3 hash of all before it.
 std::vector<std::byte> make_file(const std::function<void(hid_t file)>& fill);
 
