@@ -83,7 +83,7 @@ TEST(VariedMaterial, EnergyIsThatOfEachParticlesOwnValue) {
     ModelParameters own = material.parameters;
     own.values[0] =
         material.particles.position(p, built.world.grid.dx(), built.world.transfer.kernel)[0] > 0 ? 4e5 : 1e5;
-    expected += material.particles.real(Field::rest_volume)[p] * energy_density<2>(material.model, own, F, none);
+    expected += material.particles.rest_volume(p) * energy_density<2>(material.model, own, F, none);
   }
   const MeasureContext<2> context = {built.world.grid.dx(), built.world.transfer.kernel, 1, {}};
   const Totals totals = measure_totals<double, 2>(material.particles, material.model, material.parameters, context);

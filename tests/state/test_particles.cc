@@ -231,9 +231,9 @@ TEST(Particles, BeginAtRestAndUndeformed) {
       EXPECT_EQ(particles.real(Field::affine, e)[p], 0);
     }
     EXPECT_EQ(particles.mass(p), 2);
-    EXPECT_EQ(particles.real(Field::rest_volume)[p], 0.125f);
+    EXPECT_EQ(particles.rest_volume(p), 0.125f);
     EXPECT_EQ(particles.id()[p], 40 + p);
-    EXPECT_EQ(particles.body()[p], 3u);
+    EXPECT_EQ(particles.body(p), 3u);
     EXPECT_EQ(particles.history(0)[p], 1);
     EXPECT_EQ(particles.history(1)[p], 0.25f);
   }

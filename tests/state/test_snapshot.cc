@@ -24,7 +24,7 @@ World<Real, 2> two_materials() {
   auto& snow = world.materials[0].particles;
   snow.real(Field::velocity, 1)[1] = Real(-3);
   snow.history(0)[1] = Real(0.5);
-  snow.body()[1] = 2;
+  snow.set_origin(1, 2, snow.rest_volume(1));
   auto& cube = world.materials[1].particles;
   cube.real(Field::strain, 0)[0] = Real(1.25);
   prepare(world);

@@ -38,7 +38,7 @@ RoundTrip round_trip(const TransferSettings& settings, double wrong) {
   const Mat<double, dim> A = affine_matrix<dim>(), C = (1 + wrong) * A;
   const auto b = constant_vector<double, dim>(0.25);
   for_each_particle(world, [&](auto& particles, std::size_t p, const Vec<double, dim>& x) {
-    particles.real(Field::rest_volume)[p] *= static_cast<Real>(random.uniform(0.1, 2));
+    particles.set_origin(p, 0, particles.rest_volume(p) * static_cast<Real>(random.uniform(0.1, 2)));
     set_vector(particles, Field::velocity, p, A * x + b);
     set_matrix(particles, Field::affine, p, C);
   });

@@ -36,7 +36,7 @@ World<Real, dim> spinning_cloud(const TransferSettings& settings, double youngs_
   constexpr std::size_t kCount = 8000;
   add_particles(world, 0, random_points<dim>(random, kCount, low, high), std::pow(high[0] - low[0], dim) / kCount);
   for_each_particle(world, [&](auto& particles, std::size_t p, const Vec<double, dim>& x) {
-    particles.real(Field::rest_volume)[p] *= static_cast<Real>(random.uniform(0.5, 1.5));
+    particles.set_origin(p, 0, particles.rest_volume(p) * static_cast<Real>(random.uniform(0.5, 1.5)));
     Vec<double, dim> v;
     for (int i = 0; i < dim; ++i) v[i] = 0.4 * (i + 1) + random.uniform(-0.5, 0.5);
     v[0] -= 0.7 * x[1];

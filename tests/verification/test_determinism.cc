@@ -73,16 +73,17 @@ TEST(Determinism, SameBitsForAnyNumberOfThreads) { expect_same_bits<float>({}); 
 TEST(Determinism, SameBitsForAnyNumberOfThreadsFlip) { expect_same_bits<float>({.affine = 0, .flip = 0.95}, 20); }
 TEST(Determinism, SameBitsForAnyNumberOfThreadsDouble) { expect_same_bits<double>({.form = Form::gradient}, 20); }
 
+float with_last_bit_changed(float number) { return std::bit_cast<float>(std::bit_cast<std::uint32_t>(number) ^ 1u); }
+
 /// Control: the hash sees the last bit of any column of any particle.
 TEST(Determinism, ControlHashSeesEveryBit) {
   auto world = snow_and_jelly<float>({});
   auto& particles = world.materials[0].particles;
   const std::uint64_t before = particles.hash();
-  for (const Field field :
-       {Field::offset, Field::velocity, Field::affine, Field::strain, Field::stress, Field::rest_volume}) {
+  for (const Field field : {Field::offset, Field::velocity, Field::affine, Field::strain, Field::stress}) {
     float& number = particles.real(field)[particles.size() - 1];
     const float kept = number;
-    number = std::bit_cast<float>(std::bit_cast<std::uint32_t>(number) ^ 1u);
+    number = with_last_bit_changed(number);
     EXPECT_NE(particles.hash(), before);
     number = kept;
   }
@@ -90,13 +91,21 @@ TEST(Determinism, ControlHashSeesEveryBit) {
   EXPECT_NE(particles.hash(), before);
   particles.id()[0] ^= 1u;
   EXPECT_EQ(particles.hash(), before);
+  const std::uint16_t body = particles.body(7);
+  const float volume = particles.rest_volume(7);
+  particles.set_origin(7, body, with_last_bit_changed(volume));
+  EXPECT_NE(particles.hash(), before);
+  particles.set_origin(7, static_cast<std::uint16_t>(body + 1), volume);
+  EXPECT_NE(particles.hash(), before);
+  particles.set_origin(7, body, volume);
+  EXPECT_EQ(particles.hash(), before);
 }
 
 /// Control: the hash of a run sees one bit of one particle's volume, 60 steps later.
 TEST(Determinism, ControlOneBitChangesTheRun) {
   auto world = snow_and_jelly<float>({});
-  float& volume = world.materials[0].particles.real(Field::rest_volume)[100];
-  volume = std::bit_cast<float>(std::bit_cast<std::uint32_t>(volume) ^ 1u);
+  auto& particles = world.materials[0].particles;
+  particles.set_origin(100, particles.body(100), with_last_bit_changed(particles.rest_volume(100)));
   for (int s = 0; s < 20; ++s) step_explicit(world, choose_time_step(world, {}).dt);
   auto untouched = snow_and_jelly<float>({});
   for (int s = 0; s < 20; ++s) step_explicit(untouched, choose_time_step(untouched, {}).dt);

@@ -23,6 +23,7 @@ struct Header {
   std::array<char, 8> magic = kMagic;
   std::uint32_t version = kBenchStateVersion, text_length = 0;
   std::uint64_t particles = 0, file_length = 0;
+  double rest_volume = 0;  ///< of each particle
   Landing landing;
 };
 static_assert(std::is_trivially_copyable_v<Header>);
@@ -85,11 +86,8 @@ class StateReader {
 
 /// Columns that a step reads and that do not follow from others.
 template <int dim>
-constexpr std::array<std::pair<Field, int>, 5> kStateFields = {{{Field::offset, dim},
-                                                                {Field::velocity, dim},
-                                                                {Field::affine, dim* dim},
-                                                                {Field::strain, dim* dim},
-                                                                {Field::rest_volume, 1}}};
+constexpr std::array<std::pair<Field, int>, 4> kStateFields = {
+    {{Field::offset, dim}, {Field::velocity, dim}, {Field::affine, dim* dim}, {Field::strain, dim* dim}}};
 
 /// Calls visit(column) for each column but the cells; column[p] reads and writes particle p.
 template <int dim, class Particles, class Visit>
@@ -99,7 +97,6 @@ void for_each_column(Particles& particles, const Visit& visit) {
   }
   for (int h = 0; h < particles.history_count(); ++h) visit(particles.history(h));
   visit(particles.id());
-  visit(particles.body());
 }
 
 template <class Column>
@@ -142,6 +139,7 @@ void write_bench_state(const std::filesystem::path& path, const World<Real, dim>
   Header header;
   header.text_length = static_cast<std::uint32_t>(settings.size());
   header.particles = particles.size();
+  header.rest_volume = static_cast<double>(particles.rest_volume(0));
   header.file_length = state_length(particles, settings.size());
   header.landing = landing;
   writer.bytes(&header, sizeof(header));
@@ -207,7 +205,7 @@ void read_bench_state(const std::filesystem::path& path, World<Real, dim>& world
     for (std::size_t i = 0; i < count; ++i) {
       for (int d = 0; d < dim; ++d) positions[i][d] = dx * (cells[i * dim + static_cast<std::size_t>(d)] + inside);
     }
-    particles.append(positions, dx, world.grid.kernel(), world.grid.period(), 0, 0, 0);
+    particles.append(positions, dx, world.grid.kernel(), world.grid.period(), header.rest_volume, 0, 0);
     for_each_column<dim>(particles, [&](auto column) {
       std::vector<ColumnValue<decltype(column)>> values(count);
       require(reader.bytes(values.data(), count * sizeof(values[0])));

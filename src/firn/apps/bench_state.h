@@ -18,7 +18,7 @@
 namespace firn {
 
 /// Of the format and of what the simulation makes of equal settings: raise it when either changes.
-inline constexpr std::uint32_t kBenchStateVersion = 2;
+inline constexpr std::uint32_t kBenchStateVersion = 3;
 
 /// Writes beside the place and renames. Error(files).
 template <class Real, int dim>

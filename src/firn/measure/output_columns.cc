@@ -190,7 +190,7 @@ class MaterialOutput {
   void write_numbers(const Source& from, std::uint32_t count, const Places& places) const {
     for (std::uint32_t i = 0; i < count; ++i) {
       columns_.id[places[i]] = from.id[i];
-      columns_.body[places[i]] = from.body[i];
+      columns_.body[places[i]] = particles_.origins().body(from.origin[i]);
       columns_.material[places[i]] = number_;
     }
   }

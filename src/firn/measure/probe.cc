@@ -101,7 +101,7 @@ void add_to_probes(std::span<const Vec<double, dim>> points, const Particles<Rea
       const double mass = weight * particles.mass(p);
       sum.mass += mass;
       for (int d = 0; d < dim; ++d) sum.momentum[d] += mass * particles.real(Field::velocity, d)[p];
-      const double rest_volume = weight * particles.real(Field::rest_volume)[p];
+      const double rest_volume = weight * particles.rest_volume(p);
       const ParticleState<dim> state = particle_state(particles, p, parameters);
       sum.volume += rest_volume * volume_ratio(state, model, own.with(state.varied));
       // V p = V_0 J (tau / J).

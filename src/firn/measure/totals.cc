@@ -50,7 +50,7 @@ Totals totals_of(const Particles<Real, dim>& particles, std::size_t p, int model
   totals.momentum = mass * v;
   totals.angular_momentum = mass * (cross(x, v) + affine_spin(particles, p, context));
   totals.kinetic_energy = 0.5 * mass * dot(v, v);
-  totals.rest_volume = particles.real(Field::rest_volume)[p];
+  totals.rest_volume = particles.rest_volume(p);
   totals.elastic_energy = totals.rest_volume * energy_density<dim>(model, parameters, state.F.e, state.history);
   totals.gravitational_energy = mass * height_work;
   totals.max_speed = norm(v);

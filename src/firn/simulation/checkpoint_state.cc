@@ -27,7 +27,7 @@ const T& entry(const std::map<std::string, T>& entries, std::string_view name) {
 /// columns of a const Particles are read only.
 template <class Set, class Body>
 void for_each_column(Set& particles, const Body& body) {
-  using Real = std::remove_cvref_t<decltype(particles.real(Field::rest_volume)[0])>;
+  using Real = std::remove_cvref_t<decltype(particles.real(Field::offset)[0])>;
   for (int f = 0; f < kFieldCount; ++f) {
     const auto field = static_cast<Field>(f);
     const char* name = kFields[static_cast<std::size_t>(f)].name;
@@ -35,9 +35,7 @@ void for_each_column(Set& particles, const Body& body) {
     const auto components = static_cast<std::size_t>(particles.component_count(field));
     if (field == Field::id) {
       body(name, components, std::uint32_t(), [&](std::size_t) { return particles.id(); });
-    } else if (field == Field::body) {
-      body(name, components, std::uint16_t(), [&](std::size_t) { return particles.body(); });
-    } else if (field != Field::cell) {
+    } else if (field != Field::cell && field != Field::origin) {
       body(name, components, Real(), [&](std::size_t c) { return particles.real(field, static_cast<int>(c)); });
     }
   }
@@ -47,7 +45,8 @@ void for_each_column(Set& particles, const Body& body) {
   }
 }
 
-constexpr const char* kCellColumn = "cell";
+/// Columns that stand for others: numbers of origins mean nothing outside.
+constexpr const char *kBodyColumn = "body", *kVolumeColumn = "rest_volume", *kCellColumn = "cell";
 
 std::string shape_text(const std::string& name, std::size_t components) {
   return components == 1 ? name : fmt::format("{}[{}]", name, components);
@@ -67,7 +66,7 @@ void require_same_columns(const CheckpointMaterial& saved, const MaterialSet<Rea
   for_each_column(material.particles, [&](const std::string& name, std::size_t components, auto, const auto&) {
     wanted.push_back(shape_text(name, components));
   });
-  wanted.emplace_back(kCellColumn);
+  wanted.insert(wanted.end(), {kBodyColumn, kVolumeColumn, kCellColumn});
   if (there == wanted) return;
   throw Error(ErrorKind::files,
               fmt::format("the checkpoint cannot be used: its particles of \"{}\" have the columns {}, and the scene "
@@ -83,6 +82,14 @@ const std::vector<T>& values_of(const CheckpointMaterial& saved, std::size_t c) 
   throw Error(ErrorKind::files, fmt::format("the checkpoint cannot be used: the column \"{}\" of \"{}\" holds numbers "
                                             "of another precision, or not one per particle",
                                             column.name, saved.name));
+}
+
+void require_bodies(const CheckpointMaterial& saved, const std::vector<std::uint16_t>& seeded_in, std::size_t bodies) {
+  if (std::all_of(seeded_in.begin(), seeded_in.end(), [&](std::uint16_t body) { return body < bodies; })) return;
+  throw Error(
+      ErrorKind::files,
+      fmt::format("the checkpoint cannot be used: the column \"{}\" of \"{}\" names a body that the scene has not",
+                  kBodyColumn, saved.name));
 }
 
 template <int dim>
@@ -136,10 +143,15 @@ CheckpointMaterial save_material(const MaterialSet<Real, dim>& material, const P
     }
     saved.columns.push_back({name, components, std::move(values)});
   });
-  std::vector<std::uint64_t> cells;
-  cells.reserve(particles.size());
-  for (std::size_t p = 0; p < particles.size(); ++p) cells.push_back(particles.cell(p));
-  saved.columns.push_back({kCellColumn, 1, std::move(cells)});
+  const auto save = [&](const char* name, const auto& value_of) {
+    std::vector<decltype(value_of(0))> values;
+    values.reserve(particles.size());
+    for (std::size_t p = 0; p < particles.size(); ++p) values.push_back(value_of(p));
+    saved.columns.push_back({name, 1, std::move(values)});
+  };
+  save(kBodyColumn, [&](std::size_t p) { return particles.body(p); });
+  save(kVolumeColumn, [&](std::size_t p) { return particles.rest_volume(p); });
+  save(kCellColumn, [&](std::size_t p) { return particles.cell(p); });
   return saved;
 }
 
@@ -155,26 +167,28 @@ Particles<Real, dim> load_particles(const CheckpointMaterial& saved, const Mater
   options.acceleration = like.has(Field::acceleration);
   for (int h = 0; h < like.history_count(); ++h) options.history.push_back(like.history_spec(h));
   Particles<Real, dim> particles(options);
+  if (saved.particles == 0) return particles;
+  const std::size_t shared = saved.columns.size() - 3;
+  const std::vector<std::uint16_t>& seeded_in = values_of<std::uint16_t>(saved, shared);
+  const std::vector<Real>& rest_volumes = values_of<Real>(saved, shared + 1);
+  const std::vector<std::uint64_t>& cells = values_of<std::uint64_t>(saved, shared + 2);
+  require_bodies(saved, seeded_in, bodies);
+  require_cells<dim>(saved, cells);
   // At any place: the columns say where they are.
-  particles.append(std::vector<Vec<double, dim>>(saved.particles), 1, Kernel::linear, {}, 0, 0, 0);
+  particles.append(std::vector<Vec<double, dim>>(saved.particles), 1, Kernel::linear, {}, rest_volumes[0], 0,
+                   seeded_in[0]);
   std::size_t at = 0;
-  for_each_column(particles, [&]<class T>(const std::string& name, std::size_t components, T, const auto& column_of) {
+  for_each_column(particles, [&]<class T>(const std::string&, std::size_t components, T, const auto& column_of) {
     const std::vector<T>& values = values_of<T>(saved, at++);
     for (std::size_t c = 0; c < components; ++c) {
       const auto column = column_of(c);
       for (std::size_t p = 0; p < saved.particles; ++p) column[p] = values[c * saved.particles + p];
     }
-    if constexpr (std::is_same_v<T, std::uint16_t>) {
-      if (std::all_of(values.begin(), values.end(), [&](std::uint16_t body) { return body < bodies; })) return;
-      throw Error(ErrorKind::files,
-                  fmt::format("the checkpoint cannot be used: the column \"{}\" of \"{}\" names a body that the scene "
-                              "has not",
-                              name, saved.name));
-    }
   });
-  const std::vector<std::uint64_t>& cells = values_of<std::uint64_t>(saved, at);
-  require_cells<dim>(saved, cells);
-  for (std::size_t p = 0; p < saved.particles; ++p) particles.set_cell(p, cells[p]);
+  for (std::size_t p = 0; p < saved.particles; ++p) {
+    particles.set_origin(p, seeded_in[p], rest_volumes[p]);
+    particles.set_cell(p, cells[p]);
+  }
   particles.sort_by_block();
   return particles;
 }

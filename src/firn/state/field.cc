@@ -40,14 +40,13 @@ int element_bytes(Element element, int real_bytes) {
 const std::array<FieldSpec, kFieldCount> kFields = {{
     {"offset", "", "Position inside the cell, in cells.", Element::real, Shape::vector},
     {"strain", "", "Deformation gradient; its elastic part for plastic models.", Element::real, Shape::matrix},
-    {"rest_volume", "m^3", "Undeformed volume; per metre of thickness in 2D.", Element::real, Shape::scalar},
     {"velocity", "m/s", "Velocity.", Element::real, Shape::vector},
     {"affine", "1/s", "Affine velocity matrix C of APIC.", Element::real, Shape::matrix},
     {"stress", "Pa", "Kirchhoff stress.", Element::real, Shape::stress},
     {"grad_v", "1/s", "Velocity gradient.", Element::real, Shape::matrix},
     {"acceleration", "m/s^2", "Acceleration by the body force.", Element::real, Shape::vector},
     {"id", "", "Number of the particle, stable over the whole run.", Element::number32, Shape::scalar},
-    {"body", "", "Index of the body that the particle was seeded in.", Element::number16, Shape::scalar},
+    {"origin", "", "Body and undeformed volume that the particle was seeded with.", Element::number16, Shape::scalar},
     {"cell", "", "Place of the particle's cell in its block.", Element::number8, Shape::scalar},
 }};
 
@@ -63,7 +62,7 @@ ParticleLayout ParticleLayout::of(int dim, int real_bytes, const Options& option
     layout.field[f] = wanted ? layout.bytes : -1;
     layout.bytes += layout.components[f] * element_bytes(kFields[f].element, real_bytes);
   };
-  for (const Field field : {Field::offset, Field::strain, Field::rest_volume}) place(field);
+  for (const Field field : {Field::offset, Field::strain}) place(field);
   layout.history = layout.bytes;
   layout.bytes += options.history * real_bytes;
   if (!options.keeps_velocity) layout.kept_reals = layout.bytes / real_bytes;
@@ -71,7 +70,7 @@ ParticleLayout ParticleLayout::of(int dim, int real_bytes, const Options& option
   if (options.keeps_velocity) layout.kept_reals = layout.bytes / real_bytes;
   for (const Field field : {Field::affine, Field::stress, Field::grad_v, Field::acceleration}) place(field);
   layout.reals = layout.bytes / real_bytes;
-  for (const Field field : {Field::id, Field::body, Field::cell}) place(field);
+  for (const Field field : {Field::id, Field::origin, Field::cell}) place(field);
   return layout;
 }
 

@@ -10,20 +10,19 @@ namespace firn {
 /// A quantity that every particle carries. Declared once, in kFields; storage, moves between blocks and the hash
 /// are derived from it.
 enum class Field : int {
-  offset,       ///< position inside the cell, in cells: x = dx (cell + kernel offset + offset), offset in [0, 1]
-  strain,       ///< F_p (elastic part, for plastic models), row-major
-  rest_volume,  ///< V_p^0, m^3 (m^2 in 2D); m_p is the material's density times it
-  velocity,     ///< v_p, m/s
-  affine,       ///< C_p, 1/s, row-major: row is the velocity's component
-  stress,       ///< Kirchhoff, Pa: xx yy zz xy xz yz in 3D, xx yy zz xy in 2D
-  grad_v,       ///< sum v_i grad w_ip^T, 1/s; only where it differs from C_p (the gradient form with quadratic or cubic
-                ///< kernels)
+  offset,    ///< position inside the cell, in cells: x = dx (cell + kernel offset + offset), offset in [0, 1]
+  strain,    ///< F_p (elastic part, for plastic models), row-major
+  velocity,  ///< v_p, m/s
+  affine,    ///< C_p, 1/s, row-major: row is the velocity's component
+  stress,    ///< Kirchhoff, Pa: xx yy zz xy xz yz in 3D, xx yy zz xy in 2D
+  grad_v,    ///< sum v_i grad w_ip^T, 1/s; only where it differs from C_p (the gradient form with quadratic or cubic
+             ///< kernels)
   acceleration,  ///< of the body_force callback, m/s^2; only with one
   id,            ///< stable over the whole run
-  body,          ///< index into the scene's bodies
+  origin,        ///< what it was seeded as, see ParticleOrigins
   cell,          ///< place of the particle's cell in its block, see cell_code
 };
-inline constexpr int kFieldCount = 11;
+inline constexpr int kFieldCount = 10;
 
 struct FieldSpec {
   enum class Element { real, number32, number16, number8 };

@@ -60,7 +60,7 @@ void move_down(const Run& run, int place, int width, int components) {
 void move_down(const ParticleLayout& layout, int reals, const Run& run) {
   move_down(run, 0, layout.real_bytes, reals);
   move_down(run, layout.field[static_cast<std::size_t>(Field::id)], 4, 1);
-  move_down(run, layout.field[static_cast<std::size_t>(Field::body)], 2, 1);
+  move_down(run, layout.field[static_cast<std::size_t>(Field::origin)], 2, 1);
   move_down(run, layout.field[static_cast<std::size_t>(Field::cell)], 1, 1);
 }
 
@@ -78,10 +78,10 @@ void copy_reals(const ParticleLayout& layout, int first, int last, ParticleStora
 void copy_numbers(const ParticleLayout& layout, ParticleStorage from, std::size_t i, ParticleStorage to,
                   std::size_t j) {
   const int id = layout.field[static_cast<std::size_t>(Field::id)];
-  const int body = layout.field[static_cast<std::size_t>(Field::body)];
+  const int origin = layout.field[static_cast<std::size_t>(Field::origin)];
   const int cell = layout.field[static_cast<std::size_t>(Field::cell)];
   *to.at<std::uint32_t>(id, j) = *from.at<std::uint32_t>(id, i);
-  *to.at<std::uint16_t>(body, j) = *from.at<std::uint16_t>(body, i);
+  *to.at<std::uint16_t>(origin, j) = *from.at<std::uint16_t>(origin, i);
   *to.at<std::uint8_t>(cell, j) = *from.at<std::uint8_t>(cell, i);
 }
 

@@ -64,7 +64,7 @@ inline std::size_t record_bytes(const ParticleLayout& layout) {
 /// Copies reals [first, last) of one particle.
 void copy_reals(const ParticleLayout& layout, int first, int last, ParticleStorage from, std::size_t i,
                 ParticleStorage to, std::size_t j);
-/// Copies id, body and cell of one particle.
+/// Copies id, origin and cell of one particle.
 void copy_numbers(const ParticleLayout& layout, ParticleStorage from, std::size_t i, ParticleStorage to, std::size_t j);
 
 /// body(place, element bytes) for each component of every field.
@@ -72,7 +72,7 @@ template <class Body>
 void for_each_component(const ParticleLayout& layout, int reals, const Body& body) {
   for (int k = 0; k < reals; ++k) body(k * layout.real_bytes, layout.real_bytes);
   body(layout.field[static_cast<std::size_t>(Field::id)], 4);
-  body(layout.field[static_cast<std::size_t>(Field::body)], 2);
+  body(layout.field[static_cast<std::size_t>(Field::origin)], 2);
   body(layout.field[static_cast<std::size_t>(Field::cell)], 1);
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <type_traits>
 
 namespace firn {
@@ -26,14 +27,16 @@ struct ParticleColumns {
   using Number = std::conditional_t<std::is_const_v<Real>, const T, T>;
 
   Components<Real> offset, strain, velocity, affine, stress, grad_v, acceleration, history;
-  Real* rest_volume;
   Number<std::uint32_t>* id;
-  Number<std::uint16_t>* body;
+  Number<std::uint16_t>* origin;
   Number<std::uint8_t>* cell;
   std::remove_const_t<Real> density = 0;  ///< rho_0, kg/m^3 (kg/m^2 in 2D)
+  std::span<const std::remove_const_t<Real>> volume_of_origin = {};
 
+  /// V_p^0, m^3 (m^2 in 2D)
+  std::remove_const_t<Real> rest_volume(std::uint32_t p) const { return volume_of_origin[origin[p]]; }
   /// m_p, kg (kg/m in 2D)
-  std::remove_const_t<Real> mass(std::uint32_t p) const { return density * rest_volume[p]; }
+  std::remove_const_t<Real> mass(std::uint32_t p) const { return density * rest_volume(p); }
   /// F's rate of change comes from grad v, or from C where both are the same.
   const Components<Real>& velocity_gradient() const { return grad_v ? grad_v : affine; }
 };
@@ -65,7 +68,6 @@ ParticleColumns<Real, dim> columns_of(const ParticleLayout& layout, ParticleStor
   ParticleColumns<Real, dim> columns;
   columns.offset = components(place(Field::offset));
   columns.strain = components(place(Field::strain));
-  columns.rest_volume = components(place(Field::rest_volume)).first;
   columns.history = components(layout.history);
   columns.velocity = components(place(Field::velocity));
   columns.affine = components(place(Field::affine));
@@ -73,7 +75,7 @@ ParticleColumns<Real, dim> columns_of(const ParticleLayout& layout, ParticleStor
   columns.grad_v = components(place(Field::grad_v));
   columns.acceleration = components(place(Field::acceleration));
   columns.id = kept.at<std::uint32_t>(place(Field::id), first);
-  columns.body = kept.at<std::uint16_t>(place(Field::body), first);
+  columns.origin = kept.at<std::uint16_t>(place(Field::origin), first);
   columns.cell = kept.at<std::uint8_t>(place(Field::cell), first);
   return columns;
 }

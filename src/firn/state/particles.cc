@@ -5,7 +5,9 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
 
@@ -20,6 +22,23 @@ constexpr std::size_t kNewPart = 1 << 13;
 std::size_t chunk_bytes(const ParticleLayout& layout) {
   static_assert(kChunk * sizeof(std::uint32_t) >= 64);
   return static_cast<std::size_t>(layout.bytes) * kChunk;
+}
+
+/// By what they stand for: their numbers depend on which of them came first.
+template <class Real>
+void hash_origins(const ParticleBlock& block, int place, const ParticleOrigins<Real>& origins, XXH3_state_t* state) {
+  for_each_piece(block, place, sizeof(std::uint16_t), 0, block.count, [&](const std::byte* from, std::size_t bytes) {
+    std::array<std::uint16_t, kChunk> numbers, bodies;
+    std::array<Real, kChunk> volumes;
+    std::memcpy(numbers.data(), from, bytes);
+    const std::size_t count = bytes / sizeof(numbers[0]);
+    for (std::size_t i = 0; i < count; ++i) {
+      bodies[i] = origins.body(numbers[i]);
+      volumes[i] = origins.rest_volume(numbers[i]);
+    }
+    XXH3_64bits_update(state, bodies.data(), count * sizeof(bodies[0]));
+    XXH3_64bits_update(state, volumes.data(), count * sizeof(volumes[0]));
+  });
 }
 
 }  // namespace
@@ -38,6 +57,7 @@ template <class Real, int dim>
 Particles<Real, dim>::Particles(const Particles& other)
     : layout_(other.layout_),
       density_(other.density_),
+      origins_(other.origins_),
       history_(other.history_),
       pool_(std::make_unique<ChunkPool>(chunk_bytes(layout_))),
       first_(other.first_),
@@ -140,6 +160,8 @@ void Particles<Real, dim>::append(std::span<const Vec<double, dim>> positions, d
     throw Error(ErrorKind::usage,
                 fmt::format("body number {} is too large: a scene may have 65536 bodies", body_index));
   }
+  const std::uint16_t origin =
+      origins_.number_of(static_cast<std::uint16_t>(body_index), static_cast<Real>(rest_volume));
   for (std::size_t n = 0; n < positions.size(); ++n) {
     const auto place = cell_position<Real, dim>(positions[n], dx, kernel, period);
     if (!fits_key<dim>(place.cell)) {
@@ -159,9 +181,8 @@ void Particles<Real, dim>::append(std::span<const Vec<double, dim>> positions, d
       *columns.offset[d] = place.offset[d];
       *columns.strain[d * dim + d] = Real(1);
     }
-    *columns.rest_volume = static_cast<Real>(rest_volume);
     *columns.id = first_id + static_cast<std::uint32_t>(n);
-    *columns.body = static_cast<std::uint16_t>(body_index);
+    *columns.origin = origin;
     for (int h = 0; h < history_count(); ++h) *columns.history[h] = static_cast<Real>(history_spec(h).initial_value);
   }
   index_blocks();
@@ -318,7 +339,9 @@ std::uint64_t Particles<Real, dim>::hash() const {
     XXH3_64bits_update(state.get(), &block.count, sizeof(block.count));
     // The acceleration comes last; it belongs to a scatter, not to the state.
     const int reals = layout_.reals - component_count(Field::acceleration);
+    hash_origins(block, place_of(Field::origin), origins_, state.get());
     for_each_component(layout_, reals, [&](int place, int width) {
+      if (place == place_of(Field::origin)) return;
       for_each_piece(block, place, width, 0, block.count,
                      [&](const std::byte* from, std::size_t bytes) { XXH3_64bits_update(state.get(), from, bytes); });
     });

@@ -4,6 +4,7 @@
 #include <firn/state/cell_key.h>
 #include <firn/state/kernel.h>
 #include <firn/state/particle_block.h>
+#include <firn/state/particle_origins.h>
 
 #include <algorithm>
 #include <array>
@@ -74,8 +75,15 @@ class Particles {
   Column<const Real> real(Field field, int c = 0) const { return {*this, place_of(field, c)}; }
   Column<std::uint32_t> id() { return {*this, place_of(Field::id)}; }
   Column<const std::uint32_t> id() const { return {*this, place_of(Field::id)}; }
-  Column<std::uint16_t> body() { return {*this, place_of(Field::body)}; }
-  Column<const std::uint16_t> body() const { return {*this, place_of(Field::body)}; }
+  /// Index into the scene's bodies.
+  std::uint16_t body(std::size_t p) const { return origins_.body(origin()[p]); }
+  /// V_p^0, m^3 (m^2 in 2D)
+  Real rest_volume(std::size_t p) const { return origins_.rest_volume(origin()[p]); }
+  /// Error(usage) if there are too many different ones, see ParticleOrigins.
+  void set_origin(std::size_t p, std::uint16_t body, Real rest_volume) {
+    origin()[p] = origins_.number_of(body, rest_volume);
+  }
+  const ParticleOrigins<Real>& origins() const { return origins_; }
   int history_count() const { return static_cast<int>(history_.size()); }
   const HistorySpec& history_spec(int h) const { return history_[static_cast<std::size_t>(h)]; }
   Column<Real> history(int h) { return {*this, layout_.history + h * layout_.real_bytes}; }
@@ -84,8 +92,8 @@ class Particles {
   /// rho_0, kg/m^3 (kg/m^2 in 2D)
   double density() const { return density_; }
   /// Mass of particle p, kg (kg/m in 2D): the density times its undeformed volume. A column of its own would be 4 of
-  /// 136 bytes for a number that follows from another.
-  double mass(std::size_t p) const { return density_ * static_cast<double>(real(Field::rest_volume)[p]); }
+  /// 132 bytes for a number that follows from others.
+  double mass(std::size_t p) const { return density_ * static_cast<double>(rest_volume(p)); }
   /// Key of particle p's cell.
   std::uint64_t cell(std::size_t p) const;
   /// Moves particle p to another cell; call sort_by_block() afterwards. Ascending p.
@@ -96,8 +104,8 @@ class Particles {
   /// Adds particles at rest in their undeformed state (F = I, C = 0, history at its initial value), behind all others
   /// and in the given order until the next sort_by_block().
   /// @param positions world coordinates, m
-  /// Error(usage) if a position lies more than CellKey::kCellLimit cells from the origin, or the body has no room in
-  /// its column.
+  /// Error(usage) if a position lies more than CellKey::kCellLimit cells from the origin, the body is above 65535, or
+  /// there are too many different ones, see ParticleOrigins.
   void append(std::span<const Vec<double, dim>> positions, double dx, Kernel kernel, const Period<dim>& period,
               double rest_volume, std::uint32_t first_id, std::uint32_t body);
 
@@ -117,11 +125,11 @@ class Particles {
   /// Particles of block b from `first` on as plain arrays, up to the end of first's chunk.
   ParticleColumns<Real, dim> columns(std::size_t b, std::size_t first) {
     const ParticleStorage chunk = blocks_[b].chunk(first);
-    return with_density(columns_of<Real, dim>(layout_, chunk, first % kChunk, chunk, first % kChunk));
+    return with_shared(columns_of<Real, dim>(layout_, chunk, first % kChunk, chunk, first % kChunk));
   }
   /// The same, with the fields that do not survive a fused step in `passing`, from its first element on.
   ParticleColumns<Real, dim> columns(std::size_t b, std::size_t first, ParticleStorage passing) {
-    return with_density(columns_of<Real, dim>(layout_, blocks_[b].chunk(first), first % kChunk, passing, 0));
+    return with_shared(columns_of<Real, dim>(layout_, blocks_[b].chunk(first), first % kChunk, passing, 0));
   }
   /// body(columns, first, count) for the chunks of block b.
   template <class Body>
@@ -136,7 +144,7 @@ class Particles {
     const std::uint32_t particles = blocks_[b].count;
     for (std::uint32_t first = 0; first < particles; first += kChunk) {
       const ParticleStorage chunk = blocks_[b].chunk(first);
-      body(with_density(columns_of<const Real, dim>(layout_, chunk, 0, chunk, 0)), first,
+      body(with_shared(columns_of<const Real, dim>(layout_, chunk, 0, chunk, 0)), first,
            std::min<std::uint32_t>(kChunk, particles - first));
     }
   }
@@ -189,12 +197,13 @@ class Particles {
   };
   Place find(std::size_t p) const;
   int place_of(Field field, int c = 0) const {
-    const int width = field == Field::body ? 2 : field == Field::id ? 4 : layout_.real_bytes;
+    const int width = field == Field::origin ? 2 : field == Field::id ? 4 : layout_.real_bytes;
     return layout_.field[static_cast<std::size_t>(field)] + c * width;
   }
   template <class Element>
-  ParticleColumns<Element, dim> with_density(ParticleColumns<Element, dim> columns) const {
+  ParticleColumns<Element, dim> with_shared(ParticleColumns<Element, dim> columns) const {
     columns.density = static_cast<Real>(density_);
+    columns.volume_of_origin = origins_.rest_volumes();
     return columns;
   }
   void create_blocks(const std::vector<std::uint64_t>& keys);
@@ -202,8 +211,12 @@ class Particles {
   void place_new_particles();
   void index_blocks();
 
+  Column<std::uint16_t> origin() { return {*this, place_of(Field::origin)}; }
+  Column<const std::uint16_t> origin() const { return {*this, place_of(Field::origin)}; }
+
   ParticleLayout layout_;
   double density_;
+  ParticleOrigins<Real> origins_;
   std::vector<HistorySpec> history_;
   std::unique_ptr<ChunkPool> pool_;
   std::vector<ParticleBlock> blocks_;      ///< ascending by key

@@ -77,7 +77,7 @@ ParticleLoad<dim>::ParticleLoad(const ParticleColumns<Real, dim>& particles, std
                                 const TransferSettings& settings)
     : form_(settings.form), mass_(static_cast<double>(particles.mass(p))) {
   const double inverse_D = apic_inverse_D(settings.kernel) / (dx * dx);
-  const double scale = -dt * static_cast<double>(particles.rest_volume[p]) * (form_ == Form::mls ? inverse_D : 1);
+  const double scale = -dt * static_cast<double>(particles.rest_volume(p)) * (form_ == Form::mls ? inverse_D : 1);
   for (int i = 0; i < dim; ++i) {
     velocity_[i] = static_cast<double>(particles.velocity[i][p]);
     if (particles.acceleration) pushed_[i] = dt * static_cast<double>(particles.acceleration[i][p]);

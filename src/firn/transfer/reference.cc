@@ -91,7 +91,7 @@ void reference_scatter(const Particles<Real, dim>& particles, double dx, double 
                        const Period<dim>& period, const HiddenBehind<dim>& behind, ReferenceGrid<dim>& grid) {
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const double m = particles.mass(p);
-    const double V0 = static_cast<double>(particles.real(Field::rest_volume)[p]);
+    const double V0 = static_cast<double>(particles.rest_volume(p));
     const Vec<double, dim> v = vector(particles, Field::velocity, p);
     const Vec<double, dim> b =
         particles.has(Field::acceleration) ? vector(particles, Field::acceleration, p) : Vec<double, dim>{};

@@ -73,12 +73,21 @@ HWY_INLINE void fill_weights(const ParticleColumns<Real, dim>& particles, std::u
   }
 }
 
+template <class Real, int dim>
+HWY_INLINE Lanes<Real> load_rest_volumes(const ParticleColumns<Real, dim>& particles, std::uint32_t p) {
+  // One body alone is the usual case.
+  if (particles.volume_of_origin.size() == 1) return Lanes<Real>(particles.volume_of_origin[0]);
+  HWY_ALIGN Real volume[Lanes<Real>::kCount];
+  for (std::uint32_t lane = 0; lane < Lanes<Real>::kCount; ++lane) volume[lane] = particles.rest_volume(p + lane);
+  return load_lanes(volume);
+}
+
 template <Kernel kernel, Form form, bool flip, class Real, int dim>
 HWY_INLINE void fill_batch(const ParticleColumns<Real, dim>& particles, std::uint32_t p, Real dx, Real dt, Real affine,
                            ScatterBatch<kernel, form, flip, Real, dim>& batch) {
   using L = Lanes<Real>;
   fill_weights(particles, p, batch);
-  const L volume = load_lanes(particles.rest_volume + p);
+  const L volume = load_rest_volumes(particles, p);
   const L mass = L(particles.density) * volume;
   Mat<L, dim> tau;
   for (int i = 0; i < dim; ++i) {
