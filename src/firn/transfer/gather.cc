@@ -106,8 +106,8 @@ template <Kernel kernel, Form form, class Real, int dim>
 HWY_INLINE Vec<Lanes<Real>, dim> gather_change(const Real* HWY_RESTRICT nodes, const std::int32_t* HWY_RESTRICT first,
                                                const GatherWeights<kernel, form, Real, dim>& weights) {
   using L = Lanes<Real>;
-  using G = NodeGroup<Real>;
-  using R = NodeRow<kernel, Real>;
+  using G = SummedNodes<Real>;
+  using R = NodeRow<kernel, G>;
   constexpr int kSupport = support(kernel), kLast = dim - 1, kRows = power(kSupport, kLast);
   HWY_ALIGN Real last_weight[R::kSlots][L::kCount] = {};
   HWY_ALIGN Real row_weight[kRows][L::kCount];

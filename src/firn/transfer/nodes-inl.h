@@ -15,10 +15,10 @@ HWY_BEFORE_NAMESPACE();
 namespace firn {
 namespace HWY_NAMESPACE {
 
-/// The numbers of kNodes neighbouring nodes: two where a vector holds two, otherwise one.
-template <class Real>
+/// The numbers of kNodes neighbouring nodes: two where a vector holds two and two are allowed, otherwise one.
+template <class Real, int most = 2>
 struct NodeGroup {
-  static constexpr int kNodes = static_cast<int>(HWY_LANES(Real)) >= 2 * kNodeWidth ? 2 : 1;
+  static constexpr int kNodes = static_cast<int>(HWY_LANES(Real)) >= 2 * kNodeWidth ? most : 1;
   static constexpr int kNumbers = kNodes * kNodeWidth;
   using D = hn::CappedTag<Real, kNumbers>;
   static constexpr int kPerVector = static_cast<int>(HWY_LANES(Real)) < kNumbers ? HWY_LANES(Real) : kNumbers;
@@ -87,13 +87,18 @@ struct NodeGroup {
   }
 };
 
+/// For sums over nodes: how many there are in a group decides the order of the sum, which must not differ between AVX2
+/// and AVX-512.
+template <class Real>
+using SummedNodes = NodeGroup<Real, sizeof(Real) == sizeof(float) ? 2 : 1>;
+
 /// The nodes of a particle along the last axis, in groups that begin at multiples of a group: they may begin and end
 /// with nodes of weight zero.
-template <Kernel kernel, class Real>
+template <Kernel kernel, class Group>
 struct NodeRow {
-  static constexpr int kGroups = (support(kernel) + 2 * (NodeGroup<Real>::kNodes - 1)) / NodeGroup<Real>::kNodes;
+  static constexpr int kGroups = (support(kernel) + 2 * (Group::kNodes - 1)) / Group::kNodes;
   /// Weights by place: slot 1 + a belongs to node a, the others are zero.
-  static constexpr int kSlots = 1 + kGroups * NodeGroup<Real>::kNodes;
+  static constexpr int kSlots = 1 + kGroups * Group::kNodes;
 };
 
 /// Distance in a tile, in numbers, from a particle's first row of nodes to its row r.

@@ -28,8 +28,8 @@ struct ScatterBatch {
   static constexpr bool kGradient = form == Form::gradient;
 
   static constexpr int kGroupNodes = NodeGroup<Real>::kNodes;
-  static constexpr int kGroups = NodeRow<kernel, Real>::kGroups;
-  static constexpr int kSlots = NodeRow<kernel, Real>::kSlots;
+  static constexpr int kGroups = NodeRow<kernel, NodeGroup<Real>>::kGroups;
+  static constexpr int kSlots = NodeRow<kernel, NodeGroup<Real>>::kSlots;
 
   HWY_ALIGN Real row_weight[kRows][kCount];
   HWY_ALIGN Real row_gradient[kGradient ? dim - 1 : 1][kRows][kCount];  // with the derivative on one of the axes
