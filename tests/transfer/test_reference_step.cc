@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <bit>
 #include <memory>
 
@@ -325,6 +326,42 @@ TYPED_TEST(ReferenceStep, FusedStepsGiveTheBitsOfSplitOnes) {
     });
   }
   select_simd_target(available_simd_targets().back());
+}
+
+/// Hashes on a target, of every setting and all models.
+template <class Real, int dim>
+std::vector<std::uint64_t> hashes_on(const std::string& target) {
+  select_simd_target(target);
+  std::vector<std::uint64_t> all;
+  for_each_setting([&](const TransferSettings& settings) {
+    const auto hashes = hashes_after_run<Real, dim>(settings, true, settings.form == Form::mls);
+    all.insert(all.end(), hashes.begin(), hashes.end());
+  });
+  select_simd_target(available_simd_targets().back());
+  return all;
+}
+
+TYPED_TEST(ReferenceStep, EveryWidthWithFusedMultiplyAddGivesTheSameBits) {
+  const std::vector<std::string> targets = available_simd_targets();
+  if (std::ranges::count(targets, "avx512") == 0) {
+    GTEST_SKIP() << "this processor has no AVX-512; docs/determinism.md tells how to run this in an emulator";
+  }
+  EXPECT_EQ((hashes_on<typename TypeParam::Number, TypeParam::kDim>("avx2")),
+            (hashes_on<typename TypeParam::Number, TypeParam::kDim>("avx512")));
+}
+
+/// Control: without fused multiply-add, bits differ everywhere.
+TYPED_TEST(ReferenceStep, ControlTheBaselineHasBitsOfItsOwn) {
+  const std::vector<std::string> targets = available_simd_targets();
+  if (std::ranges::count(targets, "baseline") + std::ranges::count(targets, "avx2") < 2) {
+    GTEST_SKIP() << "not both here: an old processor, or a build for one target";
+  }
+  const auto baseline = hashes_on<typename TypeParam::Number, TypeParam::kDim>("baseline");
+  const auto avx2 = hashes_on<typename TypeParam::Number, TypeParam::kDim>("avx2");
+  ASSERT_EQ(baseline.size(), avx2.size());
+  std::size_t equal = 0;
+  for (std::size_t i = 0; i < avx2.size(); ++i) equal += baseline[i] == avx2[i] ? 1 : 0;
+  EXPECT_LT(equal, avx2.size() / 2) << "speeds may agree, states do not";
 }
 
 TYPED_TEST(ReferenceStep, FusedStepsGiveTheSameBitsOnAnyNumberOfThreads) {
