@@ -73,21 +73,23 @@ HWY_INLINE void fill_weights(const ParticleColumns<Real, dim>& particles, std::u
   }
 }
 
+/// V_p^0 of the particles p to p + lanes; 0 in the lanes behind, where there may be no number of an origin to look up.
 template <class Real, int dim>
-HWY_INLINE Lanes<Real> load_rest_volumes(const ParticleColumns<Real, dim>& particles, std::uint32_t p) {
+HWY_INLINE Lanes<Real> load_rest_volumes(const ParticleColumns<Real, dim>& particles, std::uint32_t p,
+                                         std::uint32_t lanes) {
   // One body alone is the usual case.
   if (particles.volume_of_origin.size() == 1) return Lanes<Real>(particles.volume_of_origin[0]);
-  HWY_ALIGN Real volume[Lanes<Real>::kCount];
-  for (std::uint32_t lane = 0; lane < Lanes<Real>::kCount; ++lane) volume[lane] = particles.rest_volume(p + lane);
+  HWY_ALIGN Real volume[Lanes<Real>::kCount] = {};
+  for (std::uint32_t lane = 0; lane < lanes; ++lane) volume[lane] = particles.rest_volume(p + lane);
   return load_lanes(volume);
 }
 
 template <Kernel kernel, Form form, bool flip, class Real, int dim>
-HWY_INLINE void fill_batch(const ParticleColumns<Real, dim>& particles, std::uint32_t p, Real dx, Real dt, Real affine,
-                           ScatterBatch<kernel, form, flip, Real, dim>& batch) {
+HWY_INLINE void fill_batch(const ParticleColumns<Real, dim>& particles, std::uint32_t p, std::uint32_t lanes, Real dx,
+                           Real dt, Real affine, ScatterBatch<kernel, form, flip, Real, dim>& batch) {
   using L = Lanes<Real>;
   fill_weights(particles, p, batch);
-  const L volume = load_rest_volumes(particles, p);
+  const L volume = load_rest_volumes(particles, p, lanes);
   const L mass = L(particles.density) * volume;
   Mat<L, dim> tau;
   for (int i = 0; i < dim; ++i) {
@@ -218,9 +220,9 @@ void scatter_particles(const ParticleColumns<Real, dim>& particles, std::uint32_
   static constexpr auto kTileOffsets = tile_offsets<dim>(kernel);
   Batch batch;
   for (std::uint32_t p = 0; p < count; p += Batch::kCount) {
-    fill_batch<kernel, form, flip, Real, dim>(particles, p, static_cast<Real>(dx), static_cast<Real>(dt),
-                                              static_cast<Real>(settings.affine), batch);
     const std::uint32_t lanes = count - p < Batch::kCount ? count - p : Batch::kCount;
+    fill_batch<kernel, form, flip, Real, dim>(particles, p, lanes, static_cast<Real>(dx), static_cast<Real>(dt),
+                                              static_cast<Real>(settings.affine), batch);
     for (std::uint32_t lane = 0; lane < lanes; ++lane) {
       const std::uint8_t cell = particles.cell[p + lane];
       if (cell == kNoCell) continue;
