@@ -136,7 +136,8 @@ void print_results(const RunJob& job, bool has_film) {
       job.info.copying_seconds + job.info.waiting_seconds + job.info.writing_seconds / std::max(job.info.threads, 1);
   const double all = job.info.wall_seconds + output;
   // A run of an instant says nothing about costs.
-  const std::string share = all > 1 ? fmt::format("; writing frames took {:.1f} % of it", 100 * output / all) : "";
+  const char* what = job.scene.render.every_nth > 0 ? "writing frames and waiting for pictures" : "writing frames";
+  const std::string share = all > 1 ? fmt::format("; {} took {:.1f} % of it", what, 100 * output / all) : "";
   print_line(fmt::format("done in {}{}", duration_text(all), share));
   print_line(fmt::format("  frames    {}  (open {} in ParaView)", folder.particles().string(),
                          (folder.particles() / "particles.hdf.series").string()));
