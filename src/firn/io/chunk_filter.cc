@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <new>
+#include <type_traits>
 
 namespace firn::hdf5 {
 namespace {
@@ -23,31 +24,20 @@ void require(int status) {
   if (status != Z_OK && status != Z_STREAM_END) throw Failure{"compress a part of the file"};
 }
 
-/// Byte i of every element to plane i. The size of an element is known when this is compiled, so that many are moved at
-/// once.
-template <std::size_t element>
-void shuffle(std::span<const std::byte> chunk, std::byte* planes) {
+/// Byte i of every element to plane i.
+template <class Size>
+void split_planes(std::span<const std::byte> chunk, Size element, std::byte* planes) {
   const std::size_t count = chunk.size() / element;
   for (std::size_t i = 0; i < element; ++i, planes += count) {
     for (std::size_t n = 0; n < count; ++n) planes[n] = chunk[n * element + i];
   }
 }
 
+/// Sizes that are known when this is compiled let many bytes be moved at once.
 void shuffle(std::span<const std::byte> chunk, std::size_t element, std::byte* planes) {
-  switch (element) {
-    case 1:
-      return shuffle<1>(chunk, planes);
-    case 2:
-      return shuffle<2>(chunk, planes);
-    case 4:
-      return shuffle<4>(chunk, planes);
-    case 8:
-      return shuffle<8>(chunk, planes);
-  }
-  const std::size_t count = chunk.size() / element;
-  for (std::size_t i = 0; i < element; ++i, planes += count) {
-    for (std::size_t n = 0; n < count; ++n) planes[n] = chunk[n * element + i];
-  }
+  if (element == 4) return split_planes(chunk, std::integral_constant<std::size_t, 4>(), planes);
+  if (element == 8) return split_planes(chunk, std::integral_constant<std::size_t, 8>(), planes);
+  split_planes(chunk, element, planes);
 }
 
 }  // namespace

@@ -68,10 +68,6 @@ std::array<std::byte, kTrailerSize> trailer(const std::byte* bytes, std::size_t 
   return result;
 }
 
-}  // namespace
-
-namespace {
-
 void make_file_in(Buffer& buffer, const std::function<void(hid_t file)>& fill) {
   H5FD_file_image_callbacks_t callbacks = {allocate, copy, reallocate, release, share, unshare, &buffer};
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "create a property list");

@@ -337,9 +337,9 @@ std::uint64_t Particles<Real, dim>::hash() const {
   const auto add = [&](const ParticleBlock& block) {
     XXH3_64bits_update(state.get(), &block.key, sizeof(block.key));
     XXH3_64bits_update(state.get(), &block.count, sizeof(block.count));
+    hash_origins(block, place_of(Field::origin), origins_, state.get());
     // The acceleration comes last; it belongs to a scatter, not to the state.
     const int reals = layout_.reals - component_count(Field::acceleration);
-    hash_origins(block, place_of(Field::origin), origins_, state.get());
     for_each_component(layout_, reals, [&](int place, int width) {
       if (place == place_of(Field::origin)) return;
       for_each_piece(block, place, width, 0, block.count,
