@@ -10,7 +10,7 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build pkg-config git
   libhwy-dev libtbb-dev libfmt-dev libtomlplusplus-dev libmuparser-dev libcli11-dev nlohmann-json3-dev
-  libhdf5-dev libxxhash-dev libembree-dev libopenvdb-dev libassimp-dev libpng-dev zlib1g-dev libstb-dev fonts-dejavu-core ffmpeg
+  libhdf5-dev libxxhash-dev libembree-dev libopenvdb-dev libboost-dev libassimp-dev libpng-dev zlib1g-dev libstb-dev fonts-dejavu-core ffmpeg
   libimgui-dev libglfw3-dev libepoxy-dev libgl1-mesa-dri libx11-dev xvfb
   libgtest-dev python3 python3-h5py
 )
