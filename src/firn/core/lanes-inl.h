@@ -14,6 +14,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 
@@ -148,6 +149,12 @@ HWY_INLINE bool any(LaneMask<T> mask) {
 }
 HWY_INLINE bool any(bool mask) { return mask; }
 
+/// The largest lane; none may be NaN.
+template <class T>
+HWY_INLINE T largest_lane(Lanes<T> a) {
+  return hn::GetLane(hn::MaxOfLanes(typename Lanes<T>::D(), a.v));
+}
+
 /// The power of two 2^-e with 2^e <= a < 2^(e+1), kept away from overflow and underflow so that both the result and its
 /// reciprocal are normal numbers. For zero, subnormal, infinite and NaN a it is some finite power of two.
 template <class T>
@@ -192,6 +199,16 @@ HWY_INLINE void store_lanes(Lanes<T> a, T* HWY_RESTRICT to, size_t count) {
     hn::Store(a.v, d, buffer);
     std::memcpy(to, buffer, count * sizeof(T));
   }
+}
+
+/// Bit l of the result is lane l of the mask.
+template <class T>
+HWY_INLINE std::uint64_t bits_of(LaneMask<T> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(typename Lanes<T>::D(), mask.m, bytes);
+  std::uint64_t bits;
+  std::memcpy(&bits, bytes, sizeof bits);
+  return bits;
 }
 
 /// Lanes below `count`.

@@ -27,26 +27,6 @@ constexpr int history_count() {
   return count;
 }
 
-/// Largest of the lanes and of zero.
-template <class Real>
-double largest_of(Lanes<Real> lanes) {
-  HWY_ALIGN Real values[Lanes<Real>::kCount];
-  store_lanes(lanes, values, Lanes<Real>::kCount);
-  Real largest = 0;
-  for (const Real value : values) largest = value > largest ? value : largest;
-  return static_cast<double>(largest);
-}
-
-/// First lane of the mask.
-template <class Real>
-std::size_t first_of(LaneMask<Real> mask) {
-  HWY_ALIGN Real flags[Lanes<Real>::kCount];
-  store_lanes(select(mask, Lanes<Real>(Real(1)), Lanes<Real>(Real(0))), flags, Lanes<Real>::kCount);
-  std::size_t lane = 0;
-  while (lane + 1 < Lanes<Real>::kCount && flags[lane] == Real(0)) ++lane;
-  return lane;
-}
-
 /// A model of which lane i is that of particle i of [begin, begin + count), the rest as the last one. Built from models
 /// of single numbers, so that constants may be computed with functions that vectors lack, and with the same bits.
 template <template <class> class Model, class Real, int dim>
@@ -107,15 +87,17 @@ HWY_NOINLINE StressReport update_range(const ModelParameters& parameters, const 
     const auto sound = response.J > minimum_J && magnitude <= L(kLargest);
     const auto used = first_lanes<Real>(count);
     if (HWY_UNLIKELY(any(used && !sound)) && report.failed == StressReport::kNone) {
-      report.failed = p + first_of(used && !sound);
+      report.failed = p + static_cast<std::size_t>(std::countr_zero(bits_of(used && !sound)));
     }
     wave_modulus = max(select(used && sound, response.wave_modulus, L(Real(0))), wave_modulus);
     if constexpr (is_viscous<Model<L>>()) {
       viscosity = max(select(used && sound, response.viscosity, L(Real(0))), viscosity);
     }
   }
-  report.wave_speed = std::sqrt(largest_of(wave_modulus) / parameters.density);
-  report.kinematic_viscosity = largest_of(viscosity) / parameters.density;
+  report.wave_speed = std::sqrt(static_cast<double>(largest_lane(wave_modulus)) / parameters.density);
+  if constexpr (is_viscous<Model<L>>()) {
+    report.kinematic_viscosity = static_cast<double>(largest_lane(viscosity)) / parameters.density;
+  }
   return report;
 }
 
