@@ -61,7 +61,7 @@ PROVIDERS = {
     "string": "begin end size size_t string to_string",
     "string_view": "begin end size size_t string_view",
     "thread": "thread",
-    "type_traits": "conditional_t is_const_v is_enum_v is_integral_v is_invocable_v is_same_v is_trivially_copyable_v remove_const_t",
+    "type_traits": "conditional_t integral_constant is_const_v is_enum_v is_integral_v is_invocable_v is_same_v is_trivially_copyable_v remove_const_t",
     "utility": "get move pair size_t",
     "variant": "get get_if variant",
     "vector": "begin end size size_t vector",

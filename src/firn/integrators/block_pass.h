@@ -6,6 +6,7 @@
 #include <firn/integrators/wall_pass.h>
 #include <firn/materials/update_stress.h>
 #include <firn/transfer/gather.h>
+#include <firn/transfer/tile.h>
 
 #include <algorithm>
 #include <cstring>
@@ -205,26 +206,14 @@ class BlockNodes {
   /// cell are zero: they are read with weight zero.
   template <class NodesOf>
   static void load(const Grid<Real, dim>& grid, std::size_t b, const NodesOf& nodes_of, Real* tile) {
-    const int side = tile_side<dim>(grid.kernel()), row = tile_row<dim>(grid.kernel()), beyond = side - kBlockSide<dim>;
+    const Kernel kernel = grid.kernel();
     for (int o = 0; o < kReach<dim>; ++o) {
       const Real* nodes = nodes_of(static_cast<std::size_t>(grid.node_block_of(b, o)));
-      int from[3] = {0, 0, 0}, count[3] = {1, 1, 1};
-      for (int d = 0; d < dim; ++d) {
-        const bool upper = (o >> (dim - 1 - d) & 1) != 0;
-        from[3 - dim + d] = upper ? kBlockSide<dim> : 0;
-        count[3 - dim + d] = upper ? beyond : kBlockSide<dim>;
-      }
-      for (int i = 0; i < count[0]; ++i) {
-        for (int j = 0; j < count[1]; ++j) {
-          const int source = (i * kBlockSide<dim> + j) * kBlockSide<dim>;
-          const int target = ((from[0] + i) * side + from[1] + j) * row + from[2];
-          // Node by node: with a size that the compiler knows, no function is called for a few tens of bytes.
-          for (int k = 0; k < count[2]; ++k) {
-            std::memcpy(tile + (target + k) * kNodeWidth, nodes + (source + k) * kNodeWidth, kNodeWidth * sizeof(Real));
-          }
-        }
-      }
+      for_each_shared_row<dim>(kernel, o, [&](int in_tile, int in_nodes, auto numbers) {
+        std::memcpy(tile + in_tile, nodes + in_nodes, numbers * sizeof(Real));
+      });
     }
+    const int side = tile_side<dim>(kernel), row = tile_row<dim>(kernel);
     if (row == side) return;
     for (int r = 0; r < power(side, dim - 1); ++r)
       std::fill_n(tile + (r * row + side) * kNodeWidth, kNodeWidth, Real(0));

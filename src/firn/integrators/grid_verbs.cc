@@ -3,6 +3,7 @@
 #include <firn/integrators/speed_bound.h>
 #include <firn/integrators/verb_timer.h>
 #include <firn/integrators/verbs.h>
+#include <firn/transfer/tile.h>
 
 #include <algorithm>
 #include <limits>
@@ -13,20 +14,11 @@ namespace {
 /// Adds the part of a tile's layer that overlaps the node block at offset o of the tile's block.
 template <class Real, int dim>
 void add_tile(Kernel kernel, int o, const Real* tile, Real* nodes) {
-  const int side = tile_side<dim>(kernel), row = tile_row<dim>(kernel), beyond = side - kBlockSide<dim>;
-  int from[3] = {0, 0, 0}, count[3] = {1, 1, 1};
-  for (int d = 0; d < dim; ++d) {
-    const bool upper = (o >> (dim - 1 - d) & 1) != 0;
-    from[3 - dim + d] = upper ? kBlockSide<dim> : 0;
-    count[3 - dim + d] = upper ? beyond : kBlockSide<dim>;
-  }
-  for (int i = 0; i < count[0]; ++i) {
-    for (int j = 0; j < count[1]; ++j) {
-      Real* target = nodes + (i * kBlockSide<dim> + j) * kBlockSide<dim> * kNodeWidth;
-      const Real* source = tile + (((from[0] + i) * side + from[1] + j) * row + from[2]) * kNodeWidth;
-      for (int k = 0; k < count[2] * kNodeWidth; ++k) target[k] += source[k];
-    }
-  }
+  for_each_shared_row<dim>(kernel, o, [&](int in_tile, int in_nodes, auto numbers) {
+    const Real* __restrict source = tile + in_tile;
+    Real* __restrict target = nodes + in_nodes;
+    for (int k = 0; k < numbers; ++k) target[k] += source[k];
+  });
 }
 
 /// Adds up a layer of the tiles that overlap node block g, in the order of the offsets.

@@ -8,6 +8,7 @@
 #include <firn/transfer/tile.h>
 #include <firn/transfer/weights-inl.h>
 
+#include <bit>
 #include <cmath>
 
 HWY_BEFORE_NAMESPACE();
@@ -72,10 +73,12 @@ HWY_INLINE void gather_nodes(const Real* HWY_RESTRICT nodes, const std::int32_t*
     for (int b = 0; b < (dim == 3 ? kSupport : 1); ++b) {
       const Real* HWY_RESTRICT row =
           nodes + a * tile_stride<dim>(kernel, 0) + (dim == 3 ? b * tile_stride<dim>(kernel, 1) : 0);
-      V row_v, row_against[kAgainst];
+      V row_v, row_against[kAgainst], pair[2];
 #pragma GCC unroll 4
       for (int c = 0; c < kSupport; ++c) {
-        const V v = load_nodes<dim>(row + c * kNodeWidth, first);
+        const bool is_last = c + 1 == kSupport, is_alone = is_last && c % 2 == 0;
+        if (c % 2 == 0 && !is_last) load_node_pair<dim>(row + c * kNodeWidth, first, pair);
+        const V v = is_alone ? load_nodes<dim>(row + c * kNodeWidth, first) : pair[c % 2];
         add_product(weights.weight[kLast][c], v, c == 0, row_v);
         for (int k = 0; k < kAgainst; ++k) add_product(weights.other[k][kLast][c], v, c == 0, row_against[k]);
       }
@@ -108,15 +111,11 @@ HWY_INLINE Vec<Lanes<Real>, dim> gather_change(const Real* HWY_RESTRICT nodes, c
   using L = Lanes<Real>;
   using G = SummedNodes<Real>;
   using R = NodeRow<kernel, G>;
-  constexpr int kSupport = support(kernel), kLast = dim - 1, kRows = power(kSupport, kLast);
-  HWY_ALIGN Real last_weight[R::kSlots][L::kCount] = {};
-  HWY_ALIGN Real row_weight[kRows][L::kCount];
+  constexpr int kSupport = support(kernel), kLast = dim - 1;
+  HWY_ALIGN Real weight[kLast][kSupport][L::kCount], last_weight[R::kSlots][L::kCount] = {};
   for (int a = 0; a < kSupport; ++a) {
+    for (int d = 0; d < kLast; ++d) store_lanes(weights.weight[d][a], weight[d][a], L::kCount);
     store_lanes(weights.weight[kLast][a], last_weight[1 + a], L::kCount);
-    for (int b = 0; b < (dim == 3 ? kSupport : 1); ++b) {
-      const L w = dim == 3 ? weights.weight[0][a] * weights.weight[1][b] : weights.weight[0][a];
-      store_lanes(w, row_weight[dim == 3 ? a * kSupport + b : a], L::kCount);
-    }
   }
   HWY_ALIGN Real change[L::kCount * kNodeWidth];
   HWY_ALIGN std::int32_t place[L::kCount];
@@ -124,13 +123,27 @@ HWY_INLINE Vec<Lanes<Real>, dim> gather_change(const Real* HWY_RESTRICT nodes, c
     place[lane] = static_cast<std::int32_t>(lane) * kNodeWidth;
     const int shift = first[lane] / kNodeWidth % G::kNodes;
     const Real* HWY_RESTRICT begin = nodes + first[lane] - shift * kNodeWidth;
-    G sum[R::kGroups];
-    for (int r = 0; r < kRows; ++r) {
-      const Real* HWY_RESTRICT row = begin + row_place<dim>(kernel, r);
-      const G w = G::broadcast(row_weight[r][lane]);
+    // Over rows, then over planes: in short chains of sums, none of which waits for all others.
+    const auto add_to = [&](G(&sum)[R::kGroups], bool is_first, Real w, const auto& addend) HWY_ATTR {
+      const G weight_of_all = G::broadcast(w);
       for (int g = 0; g < R::kGroups; ++g) {
-        const G node = G::load(row + g * G::kNumbers);
-        sum[g] = r == 0 ? w * node : mul_add(w, node, sum[g]);
+        sum[g] = is_first ? weight_of_all * addend(g) : mul_add(weight_of_all, addend(g), sum[g]);
+      }
+    };
+    G sum[R::kGroups];
+#pragma GCC unroll 4
+    for (int a = 0; a < kSupport; ++a) {
+      if constexpr (dim == 2) {
+        const Real* HWY_RESTRICT row = begin + row_place<dim>(kernel, a);
+        add_to(sum, a == 0, weight[0][a][lane], [&](int g) HWY_ATTR { return G::load(row + g * G::kNumbers); });
+      } else {
+        G plane[R::kGroups];
+#pragma GCC unroll 4
+        for (int b = 0; b < kSupport; ++b) {
+          const Real* HWY_RESTRICT row = begin + row_place<dim>(kernel, a * kSupport + b);
+          add_to(plane, b == 0, weight[1][b][lane], [&](int g) HWY_ATTR { return G::load(row + g * G::kNumbers); });
+        }
+        add_to(sum, a == 0, weight[0][a][lane], [&](int g) HWY_ATTR { return plane[g]; });
       }
     }
     G total;
@@ -168,20 +181,24 @@ HWY_INLINE void store_gradients(const ParticleColumns<Real, dim>& particles, std
 template <class Real, int dim>
 bool change_cell(const ParticleColumns<Real, dim>& particles, std::uint32_t p, const Real (&shift)[dim],
                  const GatherTask<Real, dim>& task, std::vector<Leaver>& leavers) {
-  Index<dim> cell = cell_of_code<dim>(task.origin, particles.cell[p]);
+  constexpr int kSide = kBlockSide<dim>;
+  std::int64_t place[dim];  // in the block
+  int code = 0;
   bool stays = true;
-  for (int d = 0; d < dim; ++d) {
+  for (int d = dim - 1, rest = particles.cell[p]; d >= 0; --d, rest /= kSide) {
     if (!(std::fabs(shift[d]) <= static_cast<Real>(CellKey<dim>::kCellLimit))) return false;
-    const auto axis = static_cast<std::size_t>(d);
-    cell[axis] += static_cast<std::int64_t>(shift[d]);
-    stays = stays && cell[axis] >= task.origin[axis] && cell[axis] < task.origin[axis] + kBlockSide<dim>;
+    place[d] = rest % kSide + static_cast<std::int64_t>(shift[d]);
+    stays = stays && place[d] >= 0 && place[d] < kSide;
   }
   if (stays) {
-    particles.cell[p] = cell_code<dim>(cell);
+    for (int d = 0; d < dim; ++d) code = code * kSide + static_cast<int>(place[d]);
+    particles.cell[p] = static_cast<std::uint8_t>(code);
     return true;
   }
+  Index<dim> cell = task.origin;
   for (int d = 0; d < dim; ++d) {
     const auto axis = static_cast<std::size_t>(d);
+    cell[axis] += place[d];
     if (const std::int64_t length = task.period[axis]; length > 0) cell[axis] = (cell[axis] % length + length) % length;
   }
   if (!fits_key<dim>(cell)) return false;
@@ -196,7 +213,6 @@ HWY_INLINE void advect(const ParticleColumns<Real, dim>& particles, std::uint32_
                        const Vec<Lanes<Real>, dim>& u, const GatherTask<Real, dim>& task, GatherReport& report,
                        std::vector<Leaver>& leavers) {
   using L = Lanes<Real>;
-  const typename L::D d_tag;
   const L cells_per_speed = L(static_cast<Real>(task.dt / task.dx));
   Vec<L, dim> shift;
   auto moved = !first_lanes<Real>(L::kCount);
@@ -211,10 +227,8 @@ HWY_INLINE void advect(const ParticleColumns<Real, dim>& particles, std::uint32_
   if (!any(moved)) return;
   HWY_ALIGN Real shifts[dim][L::kCount];
   for (int d = 0; d < dim; ++d) store_lanes(shift[d], shifts[d], L::kCount);
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(d_tag, moved.m, bits);
-  for (std::uint32_t lane = 0; lane < count; ++lane) {
-    if ((bits[lane / 8] >> lane % 8 & 1) == 0) continue;
+  for (std::uint64_t left = bits_of(moved); left != 0; left &= left - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
     Real cells[dim];
     for (int d = 0; d < dim; ++d) cells[d] = shifts[d][lane];
     if (!change_cell<Real, dim>(particles, p + lane, cells, task, leavers) && report.failed == GatherReport::kNone) {
@@ -278,12 +292,7 @@ GatherReport gather_block(const ParticleColumns<Real, dim>& particles, std::uint
     for (int i = 0; i < dim; ++i) store_lanes(v[i], particles.velocity[i] + p, count);
     advect<Real, dim>(particles, p, count, u, task, report, leavers);
   }
-  HWY_ALIGN Real squares[kCount];
-  store_lanes(largest, squares, kCount);
-  for (const Real square : squares) {
-    const double speed = std::sqrt(static_cast<double>(square));
-    if (speed > report.max_speed) report.max_speed = speed;
-  }
+  report.max_speed = std::sqrt(static_cast<double>(largest_lane(largest)));
   return report;
 }
 

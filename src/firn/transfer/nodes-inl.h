@@ -129,37 +129,106 @@ HWY_INLINE hn::Vec<D> load_blocks(D d, const Real* HWY_RESTRICT base, const std:
   }
 }
 
-/// Lane l: the first dim numbers of the node at base + first[l].
-template <int dim>
-HWY_INLINE Vec<Lanes<float>, dim> load_nodes(const float* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first) {
+/// SIMD registers of the target.
+inline constexpr int kRegisters = HWY_TARGET <= HWY_AVX3 ? 32 : 16;
+
+/// Vector whose 256-bit half j is at base + first[step j].
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE hn::Vec<D> load_halves(D d, const Real* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first,
+                                  int step) {
+  if constexpr (hn::MaxLanes(D()) * sizeof(Real) <= 32) {
+    return hn::LoadU(d, base + first[0]);
+  } else {
+    const hn::Half<D> half;
+    return hn::Combine(d, hn::LoadU(half, base + first[step]), hn::LoadU(half, base + first[0]));
+  }
+}
+
+/// The even 128-bit blocks of two vectors by turns, and the odd ones.
+template <class V>
+HWY_INLINE V even_blocks(V a, V b) {
+  return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(b), a);
+}
+template <class V>
+HWY_INLINE V odd_blocks(V a, V b) {
+  return hn::OddEvenBlocks(b, hn::SwapAdjacentBlocks(a));
+}
+
+/// Transposes 4 x 4 numbers inside each 128-bit block: the first dim of them, of nodes n[0] to n[3].
+template <int dim, class V>
+HWY_INLINE Vec<Lanes<float>, dim> transpose_blocks(const V (&n)[4]) {
   const Lanes<float>::D d;
   const hn::Repartition<std::uint64_t, Lanes<float>::D> pairs;
-  const auto n0 = load_blocks(d, base, first, 4), n1 = load_blocks(d, base, first + 1, 4),
-             n2 = load_blocks(d, base, first + 2, 4), n3 = load_blocks(d, base, first + 3, 4);
-  // Transposes 4 x 4 numbers inside each 128-bit block.
-  const auto xy01 = hn::BitCast(pairs, hn::InterleaveLower(d, n0, n1));
-  const auto xy23 = hn::BitCast(pairs, hn::InterleaveLower(d, n2, n3));
+  const auto xy01 = hn::BitCast(pairs, hn::InterleaveLower(d, n[0], n[1]));
+  const auto xy23 = hn::BitCast(pairs, hn::InterleaveLower(d, n[2], n[3]));
   Vec<Lanes<float>, dim> r;
   r[0] = {hn::BitCast(d, hn::InterleaveLower(pairs, xy01, xy23))};
   r[1] = {hn::BitCast(d, hn::InterleaveUpper(pairs, xy01, xy23))};
   if constexpr (dim == 3) {
-    const auto zm01 = hn::BitCast(pairs, hn::InterleaveUpper(d, n0, n1));
-    const auto zm23 = hn::BitCast(pairs, hn::InterleaveUpper(d, n2, n3));
+    const auto zm01 = hn::BitCast(pairs, hn::InterleaveUpper(d, n[0], n[1]));
+    const auto zm23 = hn::BitCast(pairs, hn::InterleaveUpper(d, n[2], n[3]));
     r[2] = {hn::BitCast(d, hn::InterleaveLower(pairs, zm01, zm23))};
   }
   return r;
 }
+
+/// Lane l: the first dim numbers of the node at base + first[l].
+template <int dim>
+HWY_INLINE Vec<Lanes<float>, dim> load_nodes(const float* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first) {
+  const Lanes<float>::D d;
+  const hn::Vec<Lanes<float>::D> n[4] = {load_blocks(d, base, first, 4), load_blocks(d, base, first + 1, 4),
+                                         load_blocks(d, base, first + 2, 4), load_blocks(d, base, first + 3, 4)};
+  return transpose_blocks<dim>(n);
+}
 template <int dim>
 HWY_INLINE Vec<Lanes<double>, dim> load_nodes(const double* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first) {
   const Lanes<double>::D d;
-  const auto xy0 = load_blocks(d, base, first, 2), xy1 = load_blocks(d, base, first + 1, 2);
   Vec<Lanes<double>, dim> r;
-  r[0] = {hn::InterleaveLower(d, xy0, xy1)};
-  r[1] = {hn::InterleaveUpper(d, xy0, xy1)};
-  if constexpr (dim == 3) {
-    r[2] = {hn::InterleaveLower(d, load_blocks(d, base + 2, first, 2), load_blocks(d, base + 2, first + 1, 2))};
+  if constexpr (Lanes<double>::kCount == 2 || dim == 2) {
+    const auto xy0 = load_blocks(d, base, first, 2), xy1 = load_blocks(d, base, first + 1, 2);
+    r[0] = {hn::InterleaveLower(d, xy0, xy1)};
+    r[1] = {hn::InterleaveUpper(d, xy0, xy1)};
+    if constexpr (dim == 3) {
+      r[2] = {hn::InterleaveLower(d, load_blocks(d, base + 2, first, 2), load_blocks(d, base + 2, first + 1, 2))};
+    }
+  } else {
+    // Whole nodes, in half as many loads.
+    const auto n0 = load_halves(d, base, first, 4), n1 = load_halves(d, base, first + 1, 4),
+               n2 = load_halves(d, base, first + 2, 4), n3 = load_halves(d, base, first + 3, 4);
+    const auto xz01 = hn::InterleaveLower(d, n0, n1), xz23 = hn::InterleaveLower(d, n2, n3);
+    r[0] = {even_blocks(xz01, xz23)};
+    r[1] = {even_blocks(hn::InterleaveUpper(d, n0, n1), hn::InterleaveUpper(d, n2, n3))};
+    r[2] = {odd_blocks(xz01, xz23)};
   }
   return r;
+}
+
+/// Two neighbouring nodes: that at base + first[l] and the one behind it. Both at once, in half as many loads, where
+/// there are registers for that.
+template <int dim>
+HWY_INLINE void load_node_pair(const float* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first,
+                               Vec<Lanes<float>, dim> (&nodes)[2]) {
+  if constexpr (kRegisters < 32) {
+    for (int c = 0; c < 2; ++c) nodes[c] = load_nodes<dim>(base + c * kNodeWidth, first);
+  } else {
+    const Lanes<float>::D d;
+    Vec<Lanes<float>, dim> blocks[2];
+    for (int h = 0; h < 2; ++h) {
+      const std::int32_t* HWY_RESTRICT from = first + 4 * h;
+      const hn::Vec<Lanes<float>::D> n[4] = {load_halves(d, base, from, 8), load_halves(d, base, from + 1, 8),
+                                             load_halves(d, base, from + 2, 8), load_halves(d, base, from + 3, 8)};
+      blocks[h] = transpose_blocks<dim>(n);
+    }
+    for (int i = 0; i < dim; ++i) {
+      nodes[0][i] = {even_blocks(blocks[0][i].v, blocks[1][i].v)};
+      nodes[1][i] = {odd_blocks(blocks[0][i].v, blocks[1][i].v)};
+    }
+  }
+}
+template <int dim>
+HWY_INLINE void load_node_pair(const double* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first,
+                               Vec<Lanes<double>, dim> (&nodes)[2]) {
+  for (int c = 0; c < 2; ++c) nodes[c] = load_nodes<dim>(base + c * kNodeWidth, first);
 }
 
 }  // namespace HWY_NAMESPACE
