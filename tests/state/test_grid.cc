@@ -119,5 +119,26 @@ TEST(Grid, FollowsItsParticles) {
   EXPECT_EQ(grid.node_blocks().size(), 6u);
 }
 
+TEST(Grid, FindsTilesOfActiveAndAddedBlocks) {
+  Grid<float, 3> grid(0.1, Kernel::quadratic, {});
+  std::vector<std::uint64_t> keys;
+  for (std::int64_t i = 0; i < 5; ++i) keys.push_back(key_of_block<3>({0, 0, i}));
+  std::sort(keys.begin(), keys.end());
+  grid.activate({keys[1], keys[3]});
+  grid.add_tiles(std::vector{keys[0], keys[3], keys[4]});
+  const std::vector<float*> tiles = grid.tiles_of(keys);
+  ASSERT_EQ(tiles.size(), keys.size());
+  EXPECT_EQ(tiles[1], grid.tile(0));
+  EXPECT_EQ(tiles[3], grid.tile(1));
+  EXPECT_EQ(tiles[2], nullptr);
+  const std::vector<float*> added = {tiles[0], tiles[4]};
+  EXPECT_NE(added[0], nullptr);
+  EXPECT_NE(added[1], nullptr);
+  EXPECT_NE(added[0], added[1]);
+  grid.activate({keys[0], keys[1], keys[3], keys[4]});
+  EXPECT_EQ(grid.tile(0), added[0]);
+  EXPECT_EQ(grid.tile(3), added[1]);
+}
+
 }  // namespace
 }  // namespace firn

@@ -60,11 +60,18 @@ void Grid<Real, dim>::add_tiles(std::span<const std::uint64_t> blocks) {
 }
 
 template <class Real, int dim>
-Real* Grid<Real, dim>::tile_of(std::uint64_t block) {
-  if (const std::int32_t b = find(particle_blocks_, block); b >= 0) return tiles_[static_cast<std::size_t>(b)].data();
-  if (const std::int32_t b = find(added_blocks_, block); b >= 0)
-    return added_tiles_[static_cast<std::size_t>(b)].data();
-  return nullptr;
+std::vector<Real*> Grid<Real, dim>::tiles_of(std::span<const std::uint64_t> blocks) {
+  std::vector<Real*> found(blocks.size(), nullptr);
+  const auto look_in = [&](const std::vector<std::uint64_t>& keys, std::vector<Tile>& tiles) {
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      while (at < keys.size() && keys[at] < blocks[k]) ++at;
+      if (at < keys.size() && keys[at] == blocks[k]) found[k] = tiles[at].data();
+    }
+  };
+  look_in(particle_blocks_, tiles_);
+  look_in(added_blocks_, added_tiles_);
+  return found;
 }
 
 template <class Real, int dim>

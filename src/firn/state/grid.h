@@ -82,8 +82,9 @@ class Grid {
   const Real* tile(std::size_t b, int layer = 0) const {
     return tiles_[b].data() + static_cast<std::size_t>(layer) * tile_size();
   }
-  /// Layer 0 of the tile of the block with this key, active or added; null if it has none. Layer 1 follows.
-  Real* tile_of(std::uint64_t block);
+  /// Layer 0 of the tile of each of these blocks (ascending), active or added; null for one that has none. Layer 1
+  /// follows.
+  std::vector<Real*> tiles_of(std::span<const std::uint64_t> blocks);
 
   /// Nodes of node block g: kBlockNodes x kNodeWidth numbers.
   Real* nodes(std::size_t g) { return nodes_.data() + g * kBlockNodes<dim> * kNodeWidth; }
