@@ -70,11 +70,10 @@ void time_transfers(const char* what, const TransferSettings& settings) {
   AlignedVector<std::byte> memory(static_cast<std::size_t>(particles.layout().bytes) * kChunk);
   const ParticleStorage passing = {memory.data(), kChunk};
   const auto numbers = static_cast<std::size_t>(tile_nodes<dim>(settings.kernel) * kNodeWidth);
-  const AlignedVector<Real> velocity = random_tile<Real>(numbers), change = random_tile<Real>(numbers);
+  const AlignedVector<Real> velocity = random_tile<Real>(2 * numbers);
   AlignedVector<Real> tiles(2 * numbers, Real(0));
-  Real* before = settings.flip > 0 ? tiles.data() + numbers : nullptr;
   // Without time, particles stay where they are; the operations are those of any other step.
-  const GatherTask<Real, dim> task = {velocity.data(), change.data(), 1, 0, settings, {}, {}, 0, nullptr};
+  const GatherTask<Real, dim> task = {velocity.data(), 1, 0, settings, {}, {}, 0, nullptr};
   const auto gather = gather_function<Real, dim>(settings);
   const auto scatter = scatter_function<Real, dim>(settings);
   std::vector<Leaver> leavers;
@@ -89,9 +88,8 @@ void time_transfers(const char* what, const TransferSettings& settings) {
   // The stress that scatter reads was never computed: what adds up in the tiles must stay finite.
   std::fill(memory.begin(), memory.end(), std::byte(0));
   const double scatter_time = nanoseconds([&] {
-    for_each_chunk([&](const ParticleColumns<Real, dim>& columns) {
-      scatter(columns, kChunk, 1, 0, settings, tiles.data(), before);
-    });
+    for_each_chunk(
+        [&](const ParticleColumns<Real, dim>& columns) { scatter(columns, kChunk, 1, 0, settings, tiles.data()); });
   });
   std::printf("%dD %-7s %-24s %8.2f %8.2f\n", dim, sizeof(Real) == 4 ? "single" : "double", what, gather_time,
               scatter_time);

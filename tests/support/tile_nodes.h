@@ -21,7 +21,7 @@ void for_each_tile_node(const World<Real, dim>& world, const F& f) {
         x[d] = grid.dx() * static_cast<double>(origin[static_cast<std::size_t>(d)] + rest % side);
         place += rest % side * tile_stride<dim>(grid.kernel(), d);
       }
-      f(x, grid.tile(b) + place);
+      f(x, grid.tile(b) + place * grid.layers());
     }
   }
 }

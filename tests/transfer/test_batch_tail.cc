@@ -54,7 +54,7 @@ void expect_tail_unread() {
       columns.origin[i] = i < count ? i % 2 : std::numeric_limits<std::uint16_t>::max();
     }
     AlignedVector<Real> tile(kNumbers, Real(0));
-    scatter_function<Real, 3>(settings)(columns, count, 1, 0.01, settings, tile.data(), nullptr);
+    scatter_function<Real, 3>(settings)(columns, count, 1, 0.01, settings, tile.data());
     double mass = 0;
     for (std::size_t n = kNodeWidth - 1; n < tile.size(); n += kNodeWidth) mass += static_cast<double>(tile[n]);
     EXPECT_NEAR(mass, 8 * (0.5 * ((count + 1) / 2) + 0.25 * (count / 2)), 1e-4) << count;

@@ -165,14 +165,9 @@ class BlockNodes {
         near_(colliders.near(world.grid.particle_blocks()[b], cell_offset(world.grid.kernel()),
                              dt * fastest_node(world, b))),
         constraint_(world, dt, origin_, near_),
-        walls_(world, thin, b, velocity_, change_),
+        walls_(world, thin, b, velocity_),
         corrections_(walls_.empty() ? nullptr : &walls_, near_.empty() ? nullptr : &constraint_) {
-    load(
-        world.grid, b, [&](std::size_t g) { return world.grid.nodes(g); }, velocity_);
-    if (world.grid.has_velocity_change()) {
-      load(
-          world.grid, b, [&](std::size_t g) { return world.grid.velocity_change(g); }, change_);
-    }
+    load(world.grid, b, velocity_);
   }
   BlockNodes(const BlockNodes&) = delete;
   BlockNodes& operator=(const BlockNodes&) = delete;
@@ -187,9 +182,9 @@ class BlockNodes {
       loads.resize(world.colliders.size());
       constraint_.count_in(loads);
     }
-    return {velocity_, change_,        world.grid.dx(),
-            dt,        world.transfer, world.grid.period(),
-            origin_,   first_place,    near_.empty() && walls_.empty() ? nullptr : &corrections_};
+    return {
+        velocity_,           world.grid.dx(), dt,          world.transfer,
+        world.grid.period(), origin_,         first_place, near_.empty() && walls_.empty() ? nullptr : &corrections_};
   }
 
  private:
@@ -204,19 +199,27 @@ class BlockNodes {
 
   /// Copies the node values that the block's particles touch into one tile. Nodes at the end of rows that belong to no
   /// cell are zero: they are read with weight zero.
-  template <class NodesOf>
-  static void load(const Grid<Real, dim>& grid, std::size_t b, const NodesOf& nodes_of, Real* tile) {
+  static void load(const Grid<Real, dim>& grid, std::size_t b, Real* tile) {
     const Kernel kernel = grid.kernel();
+    const int layers = grid.layers();
     for (int o = 0; o < kReach<dim>; ++o) {
-      const Real* nodes = nodes_of(static_cast<std::size_t>(grid.node_block_of(b, o)));
+      const auto g = static_cast<std::size_t>(grid.node_block_of(b, o));
+      const Real *nodes = grid.nodes(g), *change = layers == 2 ? grid.velocity_change(g) : nullptr;
       for_each_shared_row<dim>(kernel, o, [&](int in_tile, int in_nodes, auto numbers) {
-        std::memcpy(tile + in_tile, nodes + in_nodes, numbers * sizeof(Real));
+        if (layers == 1) {
+          std::memcpy(tile + in_tile, nodes + in_nodes, numbers * sizeof(Real));
+          return;
+        }
+        for (int n = 0; n < numbers; n += kNodeWidth) {
+          Real* node = tile + 2 * (in_tile + n);
+          std::memcpy(node, nodes + in_nodes + n, kNodeWidth * sizeof(Real));
+          std::memcpy(node + kNodeWidth, change + in_nodes + n, kNodeWidth * sizeof(Real));
+        }
       });
     }
-    const int side = tile_side<dim>(kernel), row = tile_row<dim>(kernel);
+    const int side = tile_side<dim>(kernel), row = tile_row<dim>(kernel), width = layers * kNodeWidth;
     if (row == side) return;
-    for (int r = 0; r < power(side, dim - 1); ++r)
-      std::fill_n(tile + (r * row + side) * kNodeWidth, kNodeWidth, Real(0));
+    for (int r = 0; r < power(side, dim - 1); ++r) std::fill_n(tile + (r * row + side) * width, width, Real(0));
   }
 
   static constexpr int kLargestTile = tile_nodes<dim>(Kernel::cubic) * kNodeWidth;
@@ -225,8 +228,7 @@ class BlockNodes {
   ColliderConstraint<Real, dim> constraint_;
   WallGather<Real, dim> walls_;
   BlockConstraint<Real, dim> corrections_;
-  alignas(64) Real velocity_[kLargestTile];
-  alignas(64) Real change_[kLargestTile];
+  alignas(64) Real velocity_[2 * kLargestTile];  ///< tile of v_i, and for FLIP in a second layer v_i - v_i^n
 };
 
 /// The columns that material laws see.

@@ -40,7 +40,7 @@ class Pass {
   /// Takes the particles that stay in block b of the grid to its tile, and those that leave to the block's outbox.
   void run(std::size_t b, BlockReport& report) {
     Grid<Real, dim>& grid = world_.grid;
-    if (m_ == 0) std::fill_n(grid.tile(b), grid.tile_size() * static_cast<std::size_t>(grid.layers()), Real(0));
+    if (m_ == 0) std::fill_n(grid.tile(b), grid.tile_size(), Real(0));
     if (material_.block_at[b] < 0) return;
     const auto own = static_cast<std::size_t>(material_.block_at[b]);
     BlockNodes<Real, dim> nodes(world_, colliders_, thin_, dt_, b);

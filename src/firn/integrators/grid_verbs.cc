@@ -11,7 +11,7 @@
 namespace firn {
 namespace {
 
-/// Adds the part of a tile's layer that overlaps the node block at offset o of the tile's block.
+/// Adds the part of a tile of one layer that overlaps the node block at offset o of the tile's block.
 template <class Real, int dim>
 void add_tile(Kernel kernel, int o, const Real* tile, Real* nodes) {
   for_each_shared_row<dim>(kernel, o, [&](int in_tile, int in_nodes, auto numbers) {
@@ -21,13 +21,33 @@ void add_tile(Kernel kernel, int o, const Real* tile, Real* nodes) {
   });
 }
 
-/// Adds up a layer of the tiles that overlap node block g, in the order of the offsets.
+/// The same for a tile of two layers.
 template <class Real, int dim>
-void sum_tiles(const Grid<Real, dim>& grid, std::size_t g, int layer, Real* nodes) {
+void add_tile(Kernel kernel, int o, const Real* tile, Real* nodes, Real* before) {
+  for_each_shared_row<dim>(kernel, o, [&](int in_tile, int in_nodes, auto numbers) {
+    const Real* __restrict source = tile + 2 * in_tile;
+    Real* __restrict target = nodes + in_nodes, * __restrict target_before = before + in_nodes;
+    for (int n = 0; n < numbers; n += kNodeWidth) {
+      for (int k = 0; k < kNodeWidth; ++k) target[n + k] += source[2 * n + k];
+      for (int k = 0; k < kNodeWidth; ++k) target_before[n + k] += source[2 * n + kNodeWidth + k];
+    }
+  });
+}
+
+/// Adds up the tiles that overlap node block g, in the order of the offsets. @param before null without FLIP
+template <class Real, int dim>
+void sum_tiles(const Grid<Real, dim>& grid, std::size_t g, Real* nodes, Real* before) {
   std::fill_n(nodes, kBlockNodes<dim> * kNodeWidth, Real(0));
+  if (before != nullptr) std::fill_n(before, kBlockNodes<dim> * kNodeWidth, Real(0));
   for (int o = 0; o < kReach<dim>; ++o) {
     const std::int32_t b = grid.particle_block_of(g, o);
-    if (b >= 0) add_tile<Real, dim>(grid.kernel(), o, grid.tile(static_cast<std::size_t>(b), layer), nodes);
+    if (b < 0) continue;
+    const Real* tile = grid.tile(static_cast<std::size_t>(b));
+    if (before == nullptr) {
+      add_tile<Real, dim>(grid.kernel(), o, tile, nodes);
+    } else {
+      add_tile<Real, dim>(grid.kernel(), o, tile, nodes, before);
+    }
   }
 }
 
@@ -46,7 +66,7 @@ std::vector<WallField<Real>> sum_wall_fields(const World<Real, dim>& world, std:
     if (tiles == world.walls.tiles.end()) continue;
     for (const WallField<Real>& tile : tiles->second) {
       const auto add = [&](std::size_t layer, Real* target) {
-        add_tile<Real, dim>(grid.kernel(), o, tile.values.data() + layer * grid.tile_size(), target);
+        add_tile<Real, dim>(grid.kernel(), o, tile.values.data() + layer * grid.layer_size(), target);
       };
       if (tile.collider == WallFields<Real>::kSeen) {
         add(0, nodes);
@@ -155,8 +175,7 @@ class NodeUpdate {
     Grid<Real, dim>& grid = world_.grid;
     Real* nodes = grid.nodes(g);
     Real* change = grid.has_velocity_change() ? grid.velocity_change(g) : nullptr;
-    sum_tiles(grid, g, 0, nodes);
-    if (change != nullptr) sum_tiles(grid, g, 1, change);
+    sum_tiles(grid, g, nodes, change);
     BlockSpeeds speeds;
     if (!world_.walls.nodes.empty()) {
       world_.walls.nodes[g] = sum_wall_fields(world_, g, nodes, change);

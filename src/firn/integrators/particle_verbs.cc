@@ -49,7 +49,7 @@ void scatter(World<Real, dim>& world, double dt) {
   parallel_each(grid.particle_blocks().size(), [&](std::size_t b) {
     const Index<dim> origin = block_origin<dim>(grid.particle_blocks()[b]);
     WallScatter<Real, dim> walls(world, thin, grid.particle_blocks()[b]);
-    std::fill_n(grid.tile(b), grid.tile_size() * static_cast<std::size_t>(grid.layers()), Real(0));
+    std::fill_n(grid.tile(b), grid.tile_size(), Real(0));
     for (auto& material : world.materials) {
       if (material.block_at[b] < 0) continue;
       const auto own = static_cast<std::size_t>(material.block_at[b]);

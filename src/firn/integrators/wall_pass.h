@@ -21,7 +21,7 @@ void scatter_partly_hidden(const World<Real, dim>& world, const ParticleColumns<
                            double dt, const PartlyHidden<dim>& particle, std::vector<WallField<Real>>& fields) {
   using Walls = WallFields<Real>;
   const ParticleLoad<dim> load(columns, p, world.grid.dx(), dt, world.transfer);
-  const std::size_t layer = world.grid.tile_size(), layers = static_cast<std::size_t>(world.grid.layers());
+  const std::size_t layer = world.grid.layer_size(), layers = static_cast<std::size_t>(world.grid.layers());
   // Numbers of fields stay where they are when there are more fields.
   Real *seen = nullptr, *unseen = nullptr;
   int unseen_behind = Walls::kSeen;
@@ -74,9 +74,8 @@ class WallScatter {
   /// Adds particles of the block to its tiles. @param fast the version for those that see all their nodes
   void scatter(ScatterBlock<Real, dim> fast, const ParticleColumns<Real, dim>& columns, std::uint32_t count, double dt,
                Real* tile) {
-    Real* before = world_.grid.layers() == 2 ? tile + world_.grid.tile_size() : nullptr;
     if (fields_ == nullptr) {
-      fast(columns, count, world_.grid.dx(), dt, world_.transfer, tile, before);
+      fast(columns, count, world_.grid.dx(), dt, world_.transfer, tile);
       return;
     }
     // For the fast path, the others pass for particles on their way elsewhere. Their sums stay apart, so that none
@@ -90,7 +89,7 @@ class WallScatter {
     }
     ParticleColumns<Real, dim> others = columns;
     others.cell = cells;
-    fast(others, count, world_.grid.dx(), dt, world_.transfer, tile, before);
+    fast(others, count, world_.grid.dx(), dt, world_.transfer, tile);
   }
 
  private:
@@ -105,14 +104,12 @@ template <class Real, int dim>
 class WallGather {
  public:
   /// @param hidden as they were when the block's particles were scattered
-  /// @param velocity tile of v_i; change tile of v_i - v_i^n, for FLIP
-  WallGather(const World<Real, dim>& world, const ThinColliders<dim>& thin, std::size_t b, const Real* velocity,
-             const Real* change)
+  /// @param velocity tile as in GatherTask
+  WallGather(const World<Real, dim>& world, const ThinColliders<dim>& thin, std::size_t b, const Real* velocity)
       : world_(world),
         b_(b),
         hidden_(thin, world.transfer, world.grid.dx(), world.grid.particle_blocks()[b]),
-        velocity_(velocity),
-        change_(change) {}
+        velocity_(velocity) {}
 
   bool empty() const { return hidden_.empty(); }
 
@@ -137,8 +134,8 @@ class WallGather {
     const bool flip = world_.transfer.flip > 0;
     ParticleSums<dim> sums;
     for (int n = 0; n < particle_.nodes.count; ++n) {
-      const Real* node = velocity_ + particle_.nodes.place[n] * kNodeWidth;
-      const Real* node_change = change_ + particle_.nodes.place[n] * kNodeWidth;
+      const Real* node = velocity_ + particle_.nodes.place[n] * kNodeWidth * world_.grid.layers();
+      const Real* node_change = node + kNodeWidth;
       if (particle_.behind[n] != WallFields<Real>::kSeen) {
         if (const Real* behind = hidden_node(particle_.nodes.place[n], particle_.behind[n])) {
           node = behind;
@@ -204,7 +201,7 @@ class WallGather {
   const World<Real, dim>& world_;
   std::size_t b_;
   HiddenNodes<Real, dim> hidden_;
-  const Real *velocity_, *change_;
+  const Real* velocity_;
   PartlyHidden<dim> particle_;
   int behind_ = WallFields<Real>::kSeen;         ///< the collider of fields_behind_; kSeen for none yet
   const Real* fields_behind_[kReach<dim>] = {};  ///< in the blocks that the tile reaches into; null where there is none

@@ -33,7 +33,7 @@ auto Grid<Real, dim>::new_tile() -> Tile {
     tile = std::move(spare_tiles_.back());
     spare_tiles_.pop_back();
   }
-  tile.resize(tile_size() * static_cast<std::size_t>(layers()));
+  tile.resize(tile_size());
   std::fill(tile.begin(), tile.end(), Real(0));
   return tile;
 }

@@ -75,15 +75,14 @@ class Grid {
   std::int32_t particle_block_of(std::size_t g, int o) const { return lower_[g][static_cast<std::size_t>(o)]; }
 
   /// Numbers in one layer of a tile.
-  std::size_t tile_size() const { return static_cast<std::size_t>(tile_nodes<dim>(kernel_) * kNodeWidth); }
-  /// Tile of particle block b: tile_nodes x kNodeWidth numbers. Layer 0 holds the momentum with the impulse of the
-  /// step's forces; layer 1, kept for FLIP only, the momentum before it.
-  Real* tile(std::size_t b, int layer = 0) { return tiles_[b].data() + static_cast<std::size_t>(layer) * tile_size(); }
-  const Real* tile(std::size_t b, int layer = 0) const {
-    return tiles_[b].data() + static_cast<std::size_t>(layer) * tile_size();
-  }
-  /// Layer 0 of the tile of each of these blocks (ascending), active or added; null for one that has none. Layer 1
-  /// follows.
+  std::size_t layer_size() const { return static_cast<std::size_t>(tile_nodes<dim>(kernel_) * kNodeWidth); }
+  /// Numbers in a tile.
+  std::size_t tile_size() const { return layer_size() * static_cast<std::size_t>(layers()); }
+  /// Tile of particle block b: at each of its nodes the momentum with the impulse of the step's forces, and behind it,
+  /// for FLIP only, the momentum before it, so that both can be in one vector.
+  Real* tile(std::size_t b) { return tiles_[b].data(); }
+  const Real* tile(std::size_t b) const { return tiles_[b].data(); }
+  /// Tile of each of these blocks (ascending), active or added; null for one that has none.
   std::vector<Real*> tiles_of(std::span<const std::uint64_t> blocks);
 
   /// Nodes of node block g: kBlockNodes x kNodeWidth numbers.

@@ -46,120 +46,100 @@ struct GatherWeights {
   }
 };
 
-/// sum w_ip v_i, and for each other weight k and axis d the sum with that weight in place of w on that axis.
-template <Kernel kernel, Form form, class Real, int dim>
-struct GatherSums {
-  Vec<Lanes<Real>, dim> v;
-  Vec<Lanes<Real>, dim> against[Against<kernel, form>::kCount][dim];
-};
-
 template <int dim, class L>
 HWY_INLINE void add_product(L w, const Vec<L, dim>& v, bool begin, Vec<L, dim>& sum) {
   for (int i = 0; i < dim; ++i) sum[i] = begin ? w * v[i] : mul_add(w, v[i], sum[i]);
 }
 
-/// Sum factorisation: along a row first, then over rows, then over planes. All lanes at once, wherever their particles
-/// lie in the tile: `nodes` is its begin and `first` the place of each particle's first node.
-template <Kernel kernel, Form form, class Real, int dim>
-HWY_INLINE void gather_nodes(const Real* HWY_RESTRICT nodes, const std::int32_t* HWY_RESTRICT first,
-                             const GatherWeights<kernel, form, Real, dim>& weights,
-                             GatherSums<kernel, form, Real, dim>& sums) {
-  using V = Vec<Lanes<Real>, dim>;
-  constexpr int kAgainst = Against<kernel, form>::kCount, kSupport = support(kernel), kLast = dim - 1;
-#pragma GCC unroll 4
-  for (int a = 0; a < kSupport; ++a) {
-    V plane_v, plane_against[kAgainst][dim];  // [k][d] for d > 0
-#pragma GCC unroll 4
-    for (int b = 0; b < (dim == 3 ? kSupport : 1); ++b) {
-      const Real* HWY_RESTRICT row =
-          nodes + a * tile_stride<dim>(kernel, 0) + (dim == 3 ? b * tile_stride<dim>(kernel, 1) : 0);
-      V row_v, row_against[kAgainst], pair[2];
-#pragma GCC unroll 4
-      for (int c = 0; c < kSupport; ++c) {
-        const bool is_last = c + 1 == kSupport, is_alone = is_last && c % 2 == 0;
-        if (c % 2 == 0 && !is_last) load_node_pair<dim>(row + c * kNodeWidth, first, pair);
-        const V v = is_alone ? load_nodes<dim>(row + c * kNodeWidth, first) : pair[c % 2];
-        add_product(weights.weight[kLast][c], v, c == 0, row_v);
-        for (int k = 0; k < kAgainst; ++k) add_product(weights.other[k][kLast][c], v, c == 0, row_against[k]);
-      }
-      if constexpr (dim == 2) {
-        plane_v = row_v;
-        for (int k = 0; k < kAgainst; ++k) plane_against[k][1] = row_against[k];
-      } else {
-        add_product(weights.weight[1][b], row_v, b == 0, plane_v);
-        for (int k = 0; k < kAgainst; ++k) {
-          add_product(weights.other[k][1][b], row_v, b == 0, plane_against[k][1]);
-          add_product(weights.weight[1][b], row_against[k], b == 0, plane_against[k][kLast]);
-        }
-      }
-    }
-    add_product(weights.weight[0][a], plane_v, a == 0, sums.v);
-    for (int k = 0; k < kAgainst; ++k) {
-      add_product(weights.other[k][0][a], plane_v, a == 0, sums.against[k][0]);
-      for (int d = 1; d < dim; ++d) {
-        add_product(weights.weight[0][a], plane_against[k][d], a == 0, sums.against[k][d]);
-      }
-    }
+/// body(0), body(1), ... body(count - 1), written out or as a loop.
+template <bool unrolled, int count, class Body>
+HWY_INLINE void repeat(const Body& body) {
+  if constexpr (unrolled) {
+#pragma GCC unroll 8
+    for (int n = 0; n < count; ++n) body(n);
+  } else {
+#pragma GCC unroll 1
+    for (int n = 0; n < count; ++n) body(n);
   }
 }
 
-/// sum w_ip of the FLIP velocity change. Particle by particle: a single sum needs its numbers in lanes only at the end,
-/// so rows of neighbouring nodes can be read as they lie.
-template <Kernel kernel, Form form, class Real, int dim>
-HWY_INLINE Vec<Lanes<Real>, dim> gather_change(const Real* HWY_RESTRICT nodes, const std::int32_t* HWY_RESTRICT first,
-                                               const GatherWeights<kernel, form, Real, dim>& weights) {
-  using L = Lanes<Real>;
-  using G = SummedNodes<Real>;
-  using R = NodeRow<kernel, G>;
-  constexpr int kSupport = support(kernel), kLast = dim - 1;
-  HWY_ALIGN Real weight[kLast][kSupport][L::kCount], last_weight[R::kSlots][L::kCount] = {};
-  for (int a = 0; a < kSupport; ++a) {
-    for (int d = 0; d < kLast; ++d) store_lanes(weights.weight[d][a], weight[d][a], L::kCount);
-    store_lanes(weights.weight[kLast][a], last_weight[1 + a], L::kCount);
-  }
-  HWY_ALIGN Real change[L::kCount * kNodeWidth];
-  HWY_ALIGN std::int32_t place[L::kCount];
-  for (std::size_t lane = 0; lane < L::kCount; ++lane) {
-    place[lane] = static_cast<std::int32_t>(lane) * kNodeWidth;
-    const int shift = first[lane] / kNodeWidth % G::kNodes;
-    const Real* HWY_RESTRICT begin = nodes + first[lane] - shift * kNodeWidth;
-    // Over rows, then over planes: in short chains of sums, none of which waits for all others.
-    const auto add_to = [&](G(&sum)[R::kGroups], bool is_first, Real w, const auto& addend) HWY_ATTR {
-      const G weight_of_all = G::broadcast(w);
-      for (int g = 0; g < R::kGroups; ++g) {
-        sum[g] = is_first ? weight_of_all * addend(g) : mul_add(weight_of_all, addend(g), sum[g]);
-      }
-    };
-    G sum[R::kGroups];
-#pragma GCC unroll 4
-    for (int a = 0; a < kSupport; ++a) {
-      if constexpr (dim == 2) {
-        const Real* HWY_RESTRICT row = begin + row_place<dim>(kernel, a);
-        add_to(sum, a == 0, weight[0][a][lane], [&](int g) HWY_ATTR { return G::load(row + g * G::kNumbers); });
-      } else {
-        G plane[R::kGroups];
-#pragma GCC unroll 4
-        for (int b = 0; b < kSupport; ++b) {
-          const Real* HWY_RESTRICT row = begin + row_place<dim>(kernel, a * kSupport + b);
-          add_to(plane, b == 0, weight[1][b][lane], [&](int g) HWY_ATTR { return G::load(row + g * G::kNumbers); });
-        }
-        add_to(sum, a == 0, weight[0][a][lane], [&](int g) HWY_ATTR { return plane[g]; });
+/// Sums over the nodes that lie on the axes from `axis` on: a row, a plane, or all.
+template <Kernel kernel, Form form, bool flip, class Real, int dim, int axis>
+struct NodeSums {
+  static constexpr int kAgainst = Against<kernel, form>::kCount;
+  using V = Vec<Lanes<Real>, dim>;
+  using Weights = GatherWeights<kernel, form, Real, dim>;
+
+  V v, change, against[kAgainst][dim];  // [k][d] for d >= axis
+
+  /// To be called before the first add().
+  HWY_INLINE void clear() {
+    for (int i = 0; i < dim; ++i) {
+      v[i] = change[i] = Lanes<Real>(Real(0));
+      for (int k = 0; k < kAgainst; ++k) {
+        for (int d = axis; d < dim; ++d) against[k][d][i] = Lanes<Real>(Real(0));
       }
     }
-    G total;
-    for (int g = 0; g < R::kGroups; ++g) {
-      const G w = G::spread(last_weight[1 + g * G::kNodes - shift] + lane, L::kCount);
-      total = g == 0 ? w * sum[g] : mul_add(w, sum[g], total);
-    }
-    total.store_sum(change + place[lane]);
   }
-  return load_nodes<dim>(change, place);
+  /// Adds node a of a row, or begins with it.
+  HWY_INLINE void add_node(const Weights& weights, int a, bool begin, const V& node_v, const V& node_change) {
+    add_product(weights.weight[axis][a], node_v, begin, v);
+    if constexpr (flip) add_product(weights.weight[axis][a], node_change, begin, change);
+    for (int k = 0; k < kAgainst; ++k) add_product(weights.other[k][axis][a], node_v, begin, against[k][axis]);
+  }
+  /// Adds the row of a plane, or the plane, that lies at a.
+  HWY_INLINE void add(const Weights& weights, int a, const NodeSums<kernel, form, flip, Real, dim, axis + 1>& part) {
+    add_node(weights, a, false, part.v, part.change);
+    for (int k = 0; k < kAgainst; ++k) {
+      for (int d = axis + 1; d < dim; ++d)
+        add_product(weights.weight[axis][a], part.against[k][d], false, against[k][d]);
+    }
+  }
+};
+
+/// Sum factorisation: along a row first, then over rows, then over planes. All lanes at once, wherever their particles
+/// lie in the tile: `nodes` is where it, its plane or its row begins, and `first` the place of each particle's first
+/// node.
+///
+/// Only rows are written out, and planes where vectors are short: all 27 nodes would be 11 KB of instructions, which
+/// are faster by themselves, but do not stay decoded while stress and scatter take their turns.
+template <Kernel kernel, Form form, bool flip, class Real, int dim, int axis = 0>
+HWY_INLINE void gather_nodes(const Real* HWY_RESTRICT nodes, const std::int32_t* HWY_RESTRICT first,
+                             const GatherWeights<kernel, form, Real, dim>& weights,
+                             NodeSums<kernel, form, flip, Real, dim, axis>& sums) {
+  using V = Vec<Lanes<Real>, dim>;
+  constexpr int kSupport = support(kernel), kStride = tile_stride<dim>(kernel, axis) * (flip ? 2 : 1);
+  if constexpr (axis < dim - 1) {
+    constexpr bool kUnrolled = axis == dim - 2 && kRegisters < 32;
+    sums.clear();
+    repeat<kUnrolled, kSupport>([&](int a) HWY_ATTR {
+      NodeSums<kernel, form, flip, Real, dim, axis + 1> part;
+      gather_nodes<kernel, form, flip, Real, dim, axis + 1>(nodes + a * kStride, first, weights, part);
+      sums.add(weights, a, part);
+    });
+  } else if constexpr (flip) {
+    repeat<true, kSupport>([&](int a) HWY_ATTR {
+      V layers[2];
+      load_layers<dim>(nodes + a * kStride, first, layers);
+      sums.add_node(weights, a, a == 0, layers[0], layers[1]);
+    });
+  } else {
+    repeat<true, kSupport / 2>([&](int half) HWY_ATTR {
+      V pair[2];
+      load_node_pair<dim>(nodes + 2 * half * kStride, first, pair);
+      for (int c = 0; c < 2; ++c) sums.add_node(weights, 2 * half + c, half + c == 0, pair[c], pair[c]);
+    });
+    if constexpr (kSupport % 2 == 1) {
+      const V last = load_nodes<dim>(nodes + (kSupport - 1) * kStride, first);
+      sums.add_node(weights, kSupport - 1, false, last, last);
+    }
+  }
 }
 
 /// Writes C_p, and grad v where it has a column of its own.
-template <Kernel kernel, Form form, class Real, int dim>
+template <Kernel kernel, Form form, bool flip, class Real, int dim>
 HWY_INLINE void store_gradients(const ParticleColumns<Real, dim>& particles, std::uint32_t p, std::uint32_t count,
-                                Real inv_dx, const GatherSums<kernel, form, Real, dim>& sums) {
+                                Real inv_dx, const NodeSums<kernel, form, flip, Real, dim, 0>& sums) {
   using L = Lanes<Real>;
   using A = Against<kernel, form>;
   const L inverse_D = L(static_cast<Real>(apic_inverse_D(kernel)) * inv_dx);
@@ -256,13 +236,13 @@ HWY_INLINE void constrain(const ParticleColumns<Real, dim>& particles, std::uint
   }
 }
 
-template <Kernel kernel, Form form, class Real, int dim>
-GatherReport gather_block(const ParticleColumns<Real, dim>& particles, std::uint32_t particle_count,
-                          const GatherTask<Real, dim>& task, std::vector<Leaver>& leavers) {
+template <Kernel kernel, Form form, bool flip, class Real, int dim>
+GatherReport gather_particles(const ParticleColumns<Real, dim>& particles, std::uint32_t particle_count,
+                              const GatherTask<Real, dim>& task, std::vector<Leaver>& leavers) {
   using L = Lanes<Real>;
   static constexpr auto kTileOffsets = tile_offsets<dim>(kernel);
   constexpr std::uint32_t kCount = L::kCount;
-  const Real flip = static_cast<Real>(task.settings.flip), inv_dx = static_cast<Real>(1 / task.dx);
+  const Real inv_dx = static_cast<Real>(1 / task.dx);
   GatherReport report;
   L largest = L(Real(0));
   for (std::uint32_t p = 0; p < particle_count; p += kCount) {
@@ -271,18 +251,17 @@ GatherReport gather_block(const ParticleColumns<Real, dim>& particles, std::uint
     HWY_ALIGN std::int32_t first[kCount];
     for (std::uint32_t lane = 0; lane < kCount; ++lane) {
       // Lanes behind the last particle have some code, of which the tile needs to know nothing.
-      first[lane] = kTileOffsets[particles.cell[p + lane] % kTileOffsets.size()];
+      first[lane] = kTileOffsets[particles.cell[p + lane] % kTileOffsets.size()] * (flip ? 2 : 1);
     }
-    GatherSums<kernel, form, Real, dim> sums;
-    gather_nodes(task.velocity, first, weights, sums);
+    NodeSums<kernel, form, flip, Real, dim, 0> sums;
+    gather_nodes<kernel, form, flip>(task.velocity, first, weights, sums);
     store_gradients(particles, p, count, inv_dx, sums);
 
     Vec<L, dim> u = sums.v, v = u;
-    if (flip > Real(0)) {
-      const Vec<L, dim> change = gather_change(task.velocity_change, first, weights);
+    if constexpr (flip) {
       for (int i = 0; i < dim; ++i) {
-        const L flip_v = load_lanes(particles.velocity[i] + p) + change[i];
-        v[i] = mul_add(L(flip), flip_v - u[i], u[i]);
+        const L flip_v = load_lanes(particles.velocity[i] + p) + sums.change[i];
+        v[i] = mul_add(L(static_cast<Real>(task.settings.flip)), flip_v - u[i], u[i]);
       }
     }
     if (task.constraint != nullptr) constrain(particles, p, count, *task.constraint, v, u);
@@ -294,6 +273,13 @@ GatherReport gather_block(const ParticleColumns<Real, dim>& particles, std::uint
   }
   report.max_speed = std::sqrt(static_cast<double>(largest_lane(largest)));
   return report;
+}
+
+template <Kernel kernel, Form form, class Real, int dim>
+GatherReport gather_block(const ParticleColumns<Real, dim>& particles, std::uint32_t count,
+                          const GatherTask<Real, dim>& task, std::vector<Leaver>& leavers) {
+  return task.settings.flip > 0 ? gather_particles<kernel, form, true>(particles, count, task, leavers)
+                                : gather_particles<kernel, form, false>(particles, count, task, leavers);
 }
 
 template <class Real, int dim>

@@ -32,8 +32,8 @@ struct GatherReport {
 
 template <class Real, int dim>
 struct GatherTask {
-  const Real* velocity;         ///< tile of v_i
-  const Real* velocity_change;  ///< tile of v_i - v_i^n; only read with settings.flip > 0
+  const Real*
+      velocity;  ///< tile of v_i; with settings.flip > 0 of two layers, as in Grid::tile, the second v_i - v_i^n
   double dx, dt;
   TransferSettings settings;
   Period<dim> period;

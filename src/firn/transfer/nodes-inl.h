@@ -11,15 +11,21 @@
 #include <firn/state/grid.h>
 #include <firn/transfer/tile.h>
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
 HWY_BEFORE_NAMESPACE();
 namespace firn {
 namespace HWY_NAMESPACE {
 
-/// The numbers of kNodes neighbouring nodes: two where a vector holds two and two are allowed, otherwise one.
-template <class Real, int most = 2>
+/// The numbers of kNodes neighbouring nodes in a tile of one or two layers: two nodes where a vector holds two,
+/// otherwise one.
+template <class Real, int layers>
 struct NodeGroup {
-  static constexpr int kNodes = static_cast<int>(HWY_LANES(Real)) >= 2 * kNodeWidth ? most : 1;
-  static constexpr int kNumbers = kNodes * kNodeWidth;
+  static constexpr int kLayers = layers, kWidth = layers * kNodeWidth;
+  static constexpr int kNodes = static_cast<int>(HWY_LANES(Real)) >= 2 * kWidth ? 2 : 1;
+  static constexpr int kNumbers = kNodes * kWidth;
   using D = hn::CappedTag<Real, kNumbers>;
   static constexpr int kPerVector = static_cast<int>(HWY_LANES(Real)) < kNumbers ? HWY_LANES(Real) : kNumbers;
   static constexpr int kVectors = kNumbers / kPerVector;
@@ -40,15 +46,42 @@ struct NodeGroup {
       return {hn::Combine(D(), hn::Set(half, values[stride]), hn::Set(half, values[0]))};
     }
   }
-  /// Every node is the one at `from`.
-  static HWY_INLINE NodeGroup repeat(const Real* HWY_RESTRICT from) {
-    if constexpr (kNodes == 1) {
-      return load(from);
+  /// Every node is the one at `from`, and the one at `second` in its second layer: zero where that is null.
+  static HWY_INLINE NodeGroup repeat(const Real* HWY_RESTRICT from, const Real* HWY_RESTRICT second) {
+    NodeGroup r;
+    if constexpr (kVectors > 1) {
+      for (int k = 0; k < kVectors; ++k) {
+        const int at = k * kPerVector % kNodeWidth;
+        const bool is_first = k * kPerVector < kNodeWidth;
+        r.part[k] = is_first            ? hn::Load(D(), from + at)
+                    : second == nullptr ? hn::Zero(D())
+                                        : hn::Load(D(), second + at);
+      }
+    } else if constexpr (kNumbers == kNodeWidth) {
+      r.part[0] = hn::Load(D(), from);
     } else {
-      const hn::Half<D> half;
-      const auto one = hn::Load(half, from);
-      return {hn::Combine(D(), one, one)};
+      const hn::CappedTag<Real, kWidth> whole;
+      auto node = repeat_layers(whole, from, second);
+      if constexpr (kNodes == 1) {
+        r.part[0] = node;
+      } else {
+        r.part[0] = hn::Combine(D(), node, node);
+      }
     }
+    return r;
+  }
+  /// Node n is first + n in all of its numbers.
+  static HWY_INLINE NodeGroup node_numbers(int first) {
+    static constexpr auto kTable = [] {
+      std::array<Real, (kLargestNumber + 2)* kWidth> table = {};
+      for (std::size_t k = 0; k < table.size(); ++k) table[k] = static_cast<Real>(static_cast<int>(k / kWidth) - 1);
+      return table;
+    }();
+    NodeGroup r;
+    for (int k = 0; k < kVectors; ++k) {
+      r.part[k] = hn::LoadU(D(), kTable.data() + (first + 1) * kWidth + k * kPerVector);
+    }
+    return r;
   }
   static HWY_INLINE NodeGroup load(const Real* HWY_RESTRICT from) {
     NodeGroup r;
@@ -57,16 +90,6 @@ struct NodeGroup {
   }
   HWY_INLINE void store(Real* HWY_RESTRICT to) const {
     for (int k = 0; k < kVectors; ++k) hn::Store(part[k], D(), to + k * kPerVector);
-  }
-
-  /// Writes the sum of the nodes as one node.
-  HWY_INLINE void store_sum(Real* HWY_RESTRICT to) const {
-    if constexpr (kNodes == 1) {
-      store(to);
-    } else {
-      const hn::Half<D> half;
-      hn::Store(hn::Add(hn::LowerHalf(half, part[0]), hn::UpperHalf(half, part[0])), half, to);
-    }
   }
 
   friend HWY_INLINE NodeGroup operator+(const NodeGroup& a, const NodeGroup& b) {
@@ -85,12 +108,21 @@ struct NodeGroup {
     for (int k = 0; k < kVectors; ++k) r.part[k] = hn::MulAdd(a.part[k], b.part[k], c.part[k]);
     return r;
   }
-};
 
-/// For sums over nodes: how many there are in a group decides the order of the sum, which must not differ between AVX2
-/// and AVX-512.
-template <class Real>
-using SummedNodes = NodeGroup<Real, sizeof(Real) == sizeof(float) ? 2 : 1>;
+ private:
+  static constexpr int kLargestNumber = 6;  ///< the last node of a cubic kernel's last group
+
+  template <class E>
+  static HWY_INLINE hn::Vec<E> repeat_layers(E e, const Real* HWY_RESTRICT from, const Real* HWY_RESTRICT second) {
+    if constexpr (layers == 1) {
+      return hn::Load(e, from);
+    } else {
+      const hn::Half<E> half;
+      if (second == nullptr) return hn::ZeroExtendVector(e, hn::Load(half, from));
+      return hn::Combine(e, hn::Load(half, second), hn::Load(half, from));
+    }
+  }
+};
 
 /// The nodes of a particle along the last axis, in groups that begin at multiples of a group: they may begin and end
 /// with nodes of weight zero.
@@ -203,12 +235,11 @@ HWY_INLINE Vec<Lanes<double>, dim> load_nodes(const double* HWY_RESTRICT base, c
   return r;
 }
 
-/// Two neighbouring nodes: that at base + first[l] and the one behind it. Both at once, in half as many loads, where
-/// there are registers for that.
+/// The node at base + first[l] and the one behind it, both at once, in half as many loads.
 template <int dim>
-HWY_INLINE void load_node_pair(const float* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first,
-                               Vec<Lanes<float>, dim> (&nodes)[2]) {
-  if constexpr (kRegisters < 32) {
+HWY_INLINE void load_adjacent(const float* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first,
+                              Vec<Lanes<float>, dim> (&nodes)[2]) {
+  if constexpr (Lanes<float>::kCount == 4) {
     for (int c = 0; c < 2; ++c) nodes[c] = load_nodes<dim>(base + c * kNodeWidth, first);
   } else {
     const Lanes<float>::D d;
@@ -226,9 +257,26 @@ HWY_INLINE void load_node_pair(const float* HWY_RESTRICT base, const std::int32_
   }
 }
 template <int dim>
-HWY_INLINE void load_node_pair(const double* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first,
-                               Vec<Lanes<double>, dim> (&nodes)[2]) {
+HWY_INLINE void load_adjacent(const double* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first,
+                              Vec<Lanes<double>, dim> (&nodes)[2]) {
   for (int c = 0; c < 2; ++c) nodes[c] = load_nodes<dim>(base + c * kNodeWidth, first);
+}
+
+/// Two neighbouring nodes of one layer.
+template <int dim, class Real>
+HWY_INLINE void load_node_pair(const Real* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first,
+                               Vec<Lanes<Real>, dim> (&nodes)[2]) {
+  if constexpr (kRegisters < 32) {
+    for (int c = 0; c < 2; ++c) nodes[c] = load_nodes<dim>(base + c * kNodeWidth, first);
+  } else {
+    load_adjacent<dim>(base, first, nodes);
+  }
+}
+/// One node in both layers.
+template <int dim, class Real>
+HWY_INLINE void load_layers(const Real* HWY_RESTRICT base, const std::int32_t* HWY_RESTRICT first,
+                            Vec<Lanes<Real>, dim> (&layers)[2]) {
+  load_adjacent<dim>(base, first, layers);
 }
 
 }  // namespace HWY_NAMESPACE
