@@ -72,8 +72,7 @@ void expect_consistent(Kernel kernel, const Period<dim>& period, const std::set<
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(grid.tile(b)) % (kNodeWidth * sizeof(Real)), 0u);
   }
   for (std::size_t g = 0; g < nodes.size(); ++g) {
-    std::fill_n(grid.nodes(g), kBlockNodes<dim> * kNodeWidth, Real(1));
-    std::fill_n(grid.velocity_change(g), kBlockNodes<dim> * kNodeWidth, Real(1));
+    std::fill_n(grid.nodes(g), 2 * kBlockNodes<dim> * kNodeWidth, Real(1));
   }
 }
 

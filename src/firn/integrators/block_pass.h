@@ -204,16 +204,12 @@ class BlockNodes {
     const int layers = grid.layers();
     for (int o = 0; o < kReach<dim>; ++o) {
       const auto g = static_cast<std::size_t>(grid.node_block_of(b, o));
-      const Real *nodes = grid.nodes(g), *change = layers == 2 ? grid.velocity_change(g) : nullptr;
+      const Real* nodes = grid.nodes(g);
       for_each_shared_row<dim>(kernel, o, [&](int in_tile, int in_nodes, auto numbers) {
         if (layers == 1) {
           std::memcpy(tile + in_tile, nodes + in_nodes, numbers * sizeof(Real));
-          return;
-        }
-        for (int n = 0; n < numbers; n += kNodeWidth) {
-          Real* node = tile + 2 * (in_tile + n);
-          std::memcpy(node, nodes + in_nodes + n, kNodeWidth * sizeof(Real));
-          std::memcpy(node + kNodeWidth, change + in_nodes + n, kNodeWidth * sizeof(Real));
+        } else {
+          std::memcpy(tile + 2 * in_tile, nodes + 2 * in_nodes, 2 * numbers * sizeof(Real));
         }
       });
     }

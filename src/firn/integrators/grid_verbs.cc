@@ -11,50 +11,48 @@
 namespace firn {
 namespace {
 
-/// Adds the part of a tile of one layer that overlaps the node block at offset o of the tile's block.
+/// Values at the nodes of one block, one node every `stride` numbers: momentum or velocity with the mass behind it, and
+/// for FLIP the momentum before the forces or the velocity's change.
+template <class Real>
+struct BlockValues {
+  Real* v;
+  Real* change;  ///< null without FLIP
+  int stride;
+};
+
 template <class Real, int dim>
+BlockValues<Real> values_of_block(Grid<Real, dim>& grid, std::size_t g) {
+  Real* nodes = grid.nodes(g);
+  return {nodes, grid.layers() == 2 ? nodes + kNodeWidth : nullptr, kNodeWidth * grid.layers()};
+}
+
+/// Adds the part of a tile that overlaps the node block at offset o of the tile's block.
+template <int layers, class Real, int dim>
 void add_tile(Kernel kernel, int o, const Real* tile, Real* nodes) {
   for_each_shared_row<dim>(kernel, o, [&](int in_tile, int in_nodes, auto numbers) {
-    const Real* __restrict source = tile + in_tile;
-    Real* __restrict target = nodes + in_nodes;
-    for (int k = 0; k < numbers; ++k) target[k] += source[k];
+    const Real* __restrict source = tile + layers * in_tile;
+    Real* __restrict target = nodes + layers * in_nodes;
+    for (int k = 0; k < layers * numbers; ++k) target[k] += source[k];
   });
 }
 
-/// The same for a tile of two layers.
+/// Adds up the tiles that overlap node block g, in the order of the offsets.
 template <class Real, int dim>
-void add_tile(Kernel kernel, int o, const Real* tile, Real* nodes, Real* before) {
-  for_each_shared_row<dim>(kernel, o, [&](int in_tile, int in_nodes, auto numbers) {
-    const Real* __restrict source = tile + 2 * in_tile;
-    Real* __restrict target = nodes + in_nodes, * __restrict target_before = before + in_nodes;
-    for (int n = 0; n < numbers; n += kNodeWidth) {
-      for (int k = 0; k < kNodeWidth; ++k) target[n + k] += source[2 * n + k];
-      for (int k = 0; k < kNodeWidth; ++k) target_before[n + k] += source[2 * n + kNodeWidth + k];
-    }
-  });
-}
-
-/// Adds up the tiles that overlap node block g, in the order of the offsets. @param before null without FLIP
-template <class Real, int dim>
-void sum_tiles(const Grid<Real, dim>& grid, std::size_t g, Real* nodes, Real* before) {
-  std::fill_n(nodes, kBlockNodes<dim> * kNodeWidth, Real(0));
-  if (before != nullptr) std::fill_n(before, kBlockNodes<dim> * kNodeWidth, Real(0));
+void sum_tiles(Grid<Real, dim>& grid, std::size_t g) {
+  Real* nodes = grid.nodes(g);
+  std::fill_n(nodes, kBlockNodes<dim> * kNodeWidth * grid.layers(), Real(0));
+  const auto add = grid.layers() == 2 ? &add_tile<2, Real, dim> : &add_tile<1, Real, dim>;
   for (int o = 0; o < kReach<dim>; ++o) {
     const std::int32_t b = grid.particle_block_of(g, o);
-    if (b < 0) continue;
-    const Real* tile = grid.tile(static_cast<std::size_t>(b));
-    if (before == nullptr) {
-      add_tile<Real, dim>(grid.kernel(), o, tile, nodes);
-    } else {
-      add_tile<Real, dim>(grid.kernel(), o, tile, nodes, before);
-    }
+    if (b >= 0) add(grid.kernel(), o, grid.tile(static_cast<std::size_t>(b)), nodes);
   }
 }
 
 /// Adds what particles that do not see all of their nodes bring to those they do see, and gives the others: their
 /// layers as in WallFields::tiles, in the same order of tiles.
 template <class Real, int dim>
-std::vector<WallField<Real>> sum_wall_fields(const World<Real, dim>& world, std::size_t g, Real* nodes, Real* before) {
+std::vector<WallField<Real>> sum_wall_fields(const World<Real, dim>& world, std::size_t g,
+                                             const BlockValues<Real>& nodes) {
   constexpr std::size_t kBlock = kBlockNodes<dim> * kNodeWidth;
   const Grid<Real, dim>& grid = world.grid;
   const std::size_t layers = static_cast<std::size_t>(grid.layers());
@@ -65,34 +63,44 @@ std::vector<WallField<Real>> sum_wall_fields(const World<Real, dim>& world, std:
     const auto tiles = world.walls.tiles.find(grid.particle_blocks()[static_cast<std::size_t>(b)]);
     if (tiles == world.walls.tiles.end()) continue;
     for (const WallField<Real>& tile : tiles->second) {
-      const auto add = [&](std::size_t layer, Real* target) {
-        add_tile<Real, dim>(grid.kernel(), o, tile.values.data() + layer * grid.layer_size(), target);
-      };
+      const auto layer_of_tile = [&](std::size_t layer) { return tile.values.data() + layer * grid.layer_size(); };
       if (tile.collider == WallFields<Real>::kSeen) {
-        add(0, nodes);
-        if (before != nullptr) add(1, before);
+        Real* const targets[] = {nodes.v, nodes.change};
+        for (std::size_t layer = 0; layer < layers; ++layer) {
+          for_each_shared_row<dim>(grid.kernel(), o, [&](int in_tile, int in_nodes, int numbers) {
+            for (int k = 0; k < numbers; ++k) {
+              const int node = (in_nodes + k) / kNodeWidth;
+              targets[layer][node * nodes.stride + k % kNodeWidth] += layer_of_tile(layer)[in_tile + k];
+            }
+          });
+        }
         continue;
       }
       WallField<Real>& sum = get_field(sums, tile.collider, (layers + 1) * kBlock);
-      for (std::size_t layer = 0; layer <= layers; ++layer) add(layer, sum.values.data() + layer * kBlock);
+      for (std::size_t layer = 0; layer <= layers; ++layer) {
+        add_tile<1, Real, dim>(grid.kernel(), o, layer_of_tile(layer), sum.values.data() + layer * kBlock);
+      }
     }
   }
   return sums;
 }
 
-/// v_i = p_i / m_i + dt g, in place. `change`, if given, comes as the momentum before the step's forces and leaves as
-/// v_i^{n+1} - v_i^n.
+/// v_i = p_i / m_i + dt g, in place. The change, if there is one, comes as the momentum before the step's forces and
+/// leaves as v_i^{n+1} - v_i^n.
 template <class Real, int dim>
-void momentum_to_velocity(Real* nodes, Real* change, const Vec<Real, dim>& gravity_impulse) {
+void momentum_to_velocity(const BlockValues<Real>& nodes, const Vec<Real, dim>& gravity_impulse) {
   for (int n = 0; n < kBlockNodes<dim>; ++n) {
-    Real* node = nodes + n * kNodeWidth;
-    const Real mass = node[kMassSlot];
-    const bool has_mass = mass > std::numeric_limits<Real>::min();
-    for (int i = 0; i < dim; ++i) node[i] = has_mass ? node[i] / mass + gravity_impulse[i] : Real(0);
-    if (change != nullptr) {
-      Real* node_change = change + n * kNodeWidth;
-      for (int i = 0; i < dim; ++i) node_change[i] = has_mass ? node[i] - node_change[i] / mass : Real(0);
-    }
+    Real* node = nodes.v + n * nodes.stride;
+    const bool has_mass = node[kMassSlot] > std::numeric_limits<Real>::min();
+    // All four numbers, which one instruction divides.
+    const Real mass = has_mass ? node[kMassSlot] : Real(1);
+    Real quotient[kNodeWidth];
+    for (int k = 0; k < kNodeWidth; ++k) quotient[k] = node[k] / mass;
+    for (int i = 0; i < dim; ++i) node[i] = has_mass ? quotient[i] + gravity_impulse[i] : Real(0);
+    if (nodes.change == nullptr) continue;
+    Real* change = nodes.change + n * nodes.stride;
+    for (int k = 0; k < kNodeWidth; ++k) quotient[k] = change[k] / mass;
+    for (int i = 0; i < dim; ++i) change[i] = has_mass ? node[i] - quotient[i] : Real(0);
   }
 }
 
@@ -122,12 +130,12 @@ Vec<double, dim> admissible_behind(const PosedCollider<dim>& collider, const Vec
 /// largest speed of a collider at such a node, or at one that it can reach within `ahead` seconds.
 /// @param behind place of the collider that these nodes are hidden behind, with the normals of its surface; or kSeen
 template <class Real, int dim>
-double apply_colliders(std::span<const StepCollider<dim>* const> colliders, std::uint64_t block, double dx, Real* nodes,
-                       Real* change, double ahead, std::vector<ColliderLoad>& loads,
+double apply_colliders(std::span<const StepCollider<dim>* const> colliders, std::uint64_t block, double dx,
+                       const BlockValues<Real>& nodes, double ahead, std::vector<ColliderLoad>& loads,
                        int behind = WallFields<Real>::kSeen, const Real* normals = nullptr) {
   double fastest = 0;
   for (int n = 0; n < kBlockNodes<dim>; ++n) {
-    Real* node = nodes + n * kNodeWidth;
+    Real* node = nodes.v + n * nodes.stride;
     if (!(node[kMassSlot] > std::numeric_limits<Real>::min())) continue;
     const Vec<double, dim> x = node_position<dim>(block, n, dx);
     for (const StepCollider<dim>* near : colliders) {
@@ -144,7 +152,7 @@ double apply_colliders(std::span<const StepCollider<dim>* const> colliders, std:
                                         : collider.admissible(x, v);
       for (int i = 0; i < dim; ++i) {
         const Real new_v = static_cast<Real>(w[i]);
-        if (change != nullptr) change[n * kNodeWidth + i] += new_v - node[i];
+        if (nodes.change != nullptr) nodes.change[n * nodes.stride + i] += new_v - node[i];
         lost[i] = v[i] - static_cast<double>(new_v);
         node[i] = new_v;
       }
@@ -173,22 +181,21 @@ class NodeUpdate {
 
   BlockSpeeds run(std::size_t g) const {
     Grid<Real, dim>& grid = world_.grid;
-    Real* nodes = grid.nodes(g);
-    Real* change = grid.has_velocity_change() ? grid.velocity_change(g) : nullptr;
-    sum_tiles(grid, g, nodes, change);
+    const BlockValues<Real> nodes = values_of_block(grid, g);
+    sum_tiles(grid, g);
     BlockSpeeds speeds;
     if (!world_.walls.nodes.empty()) {
-      world_.walls.nodes[g] = sum_wall_fields(world_, g, nodes, change);
+      world_.walls.nodes[g] = sum_wall_fields(world_, g, nodes);
       for (WallField<Real>& field : world_.walls.nodes[g]) speeds.hidden.push_back(update_hidden(g, field));
     }
-    momentum_to_velocity<Real, dim>(nodes, change, gravity_impulse_);
+    momentum_to_velocity<Real, dim>(nodes, gravity_impulse_);
     const std::uint64_t block = grid.node_blocks()[g];
     const auto near = colliders_.near(block, 0);
     if (!near.empty()) {
       speeds.loads.resize(world_.colliders.size());
-      speeds.collider = apply_colliders<Real, dim>(near, block, grid.dx(), nodes, change, 3 * dt_, speeds.loads);
+      speeds.collider = apply_colliders<Real, dim>(near, block, grid.dx(), nodes, 3 * dt_, speeds.loads);
     }
-    measure(nodes, change, speeds);
+    measure(nodes, speeds);
     return speeds;
   }
 
@@ -196,9 +203,9 @@ class NodeUpdate {
   BlockSpeeds update_hidden(std::size_t g, WallField<Real>& field) const {
     constexpr std::size_t kBlock = kBlockNodes<dim> * kNodeWidth;
     const bool flip = world_.grid.has_velocity_change();
-    Real* nodes = field.values.data();
-    Real* change = flip ? nodes + kBlock : nullptr;
-    momentum_to_velocity<Real, dim>(nodes, change, gravity_impulse_);
+    Real* first = field.values.data();
+    const BlockValues<Real> nodes = {first, flip ? first + kBlock : nullptr, kNodeWidth};
+    momentum_to_velocity<Real, dim>(nodes, gravity_impulse_);
     const std::uint64_t block = world_.grid.node_blocks()[g];
     auto near = colliders_.near(block, 0);
     // The wall may be farther from its hidden nodes than their block is wide.
@@ -207,15 +214,15 @@ class NodeUpdate {
     if (at == near.end() || *at != wall) near.insert(at, wall);
     BlockSpeeds speeds;
     speeds.loads.resize(world_.colliders.size());
-    speeds.collider = apply_colliders<Real, dim>(near, block, world_.grid.dx(), nodes, change, 3 * dt_, speeds.loads,
-                                                 field.collider, nodes + (flip ? 2 : 1) * kBlock);
-    measure(nodes, change, speeds);
+    speeds.collider = apply_colliders<Real, dim>(near, block, world_.grid.dx(), nodes, 3 * dt_, speeds.loads,
+                                                 field.collider, first + (flip ? 2 : 1) * kBlock);
+    measure(nodes, speeds);
     return speeds;
   }
 
-  static void measure(const Real* nodes, const Real* change, BlockSpeeds& speeds) {
-    speeds.grid = speeds_by_mass<Real, dim>(nodes, nodes);
-    if (change != nullptr) speeds.change = speeds_by_mass<Real, dim>(nodes, change);
+  static void measure(const BlockValues<Real>& nodes, BlockSpeeds& speeds) {
+    speeds.grid = speeds_by_mass<Real, dim>(nodes.v, nodes.v, nodes.stride);
+    if (nodes.change != nullptr) speeds.change = speeds_by_mass<Real, dim>(nodes.v, nodes.change, nodes.stride);
   }
 
   World<Real, dim>& world_;

@@ -27,11 +27,13 @@ struct SpeedsByMass {
   }
 };
 
-/// @param vectors of the block's nodes: velocities or their changes
+/// @param nodes of one block
+/// @param vectors their velocities or changes
+/// @param stride from one node to the next, in both
 template <class Real, int dim>
-SpeedsByMass speeds_by_mass(const Real* nodes, const Real* vectors) {
+SpeedsByMass speeds_by_mass(const Real* nodes, const Real* vectors, int stride) {
   Real heaviest = 0;
-  for (int n = 0; n < kBlockNodes<dim>; ++n) heaviest = std::max(heaviest, nodes[n * kNodeWidth + kMassSlot]);
+  for (int n = 0; n < kBlockNodes<dim>; ++n) heaviest = std::max(heaviest, nodes[n * stride + kMassSlot]);
   SpeedsByMass speeds;
   if (!(heaviest > std::numeric_limits<Real>::min())) return speeds;
   speeds.exponent = std::ilogb(heaviest);
@@ -41,17 +43,20 @@ SpeedsByMass speeds_by_mass(const Real* nodes, const Real* vectors) {
     mass = limit;
     limit *= Real(0.5);
   }
+  std::array<double, SpeedsByMass::kClasses + 1> squares = {};  // and of those that are lighter
   for (int n = 0; n < kBlockNodes<dim>; ++n) {
     double square = 0;
     for (int i = 0; i < dim; ++i) {
-      const auto v = static_cast<double>(vectors[n * kNodeWidth + i]);
+      const auto v = static_cast<double>(vectors[n * stride + i]);
       square += v * v;
     }
-    speeds.all = std::max(speeds.all, square);
+    // Counted, not searched: which class a node is in cannot be guessed.
     std::size_t k = 0;
-    while (k < least.size() && nodes[n * kNodeWidth + kMassSlot] < least[k]) ++k;
-    if (k < least.size()) speeds.squares[k] = std::max(speeds.squares[k], square);
+    for (const Real mass : least) k += nodes[n * stride + kMassSlot] < mass ? 1 : 0;
+    squares[k] = std::max(squares[k], square);
   }
+  std::copy_n(squares.begin(), speeds.squares.size(), speeds.squares.begin());
+  for (const double square : squares) speeds.all = std::max(speeds.all, square);
   return speeds;
 }
 

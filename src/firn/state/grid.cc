@@ -125,16 +125,12 @@ void Grid<Real, dim>::link_blocks() {
     lower_.back()[link.offset] = static_cast<std::int32_t>(link.block);
   }
   // What nodes held is over, so nothing needs to be copied, and old and new need not be there at the same time.
-  const auto make_room = [&](AlignedVector<Real>& numbers) {
-    const std::size_t wanted = node_blocks_.size() * static_cast<std::size_t>(kBlockNodes<dim> * kNodeWidth);
-    if (wanted > numbers.capacity()) {
-      AlignedVector<Real>().swap(numbers);
-      numbers.reserve(wanted + wanted / 16);
-    }
-    numbers.resize(wanted);
-  };
-  make_room(nodes_);
-  if (keeps_velocity_change_) make_room(velocity_change_);
+  const std::size_t wanted = node_blocks_.size() * block_size();
+  if (wanted > nodes_.capacity()) {
+    AlignedVector<Real>().swap(nodes_);
+    nodes_.reserve(wanted + wanted / 16);
+  }
+  nodes_.resize(wanted);
 }
 
 template class Grid<float, 2>;

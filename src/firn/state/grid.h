@@ -85,15 +85,11 @@ class Grid {
   /// Tile of each of these blocks (ascending), active or added; null for one that has none.
   std::vector<Real*> tiles_of(std::span<const std::uint64_t> blocks);
 
-  /// Nodes of node block g: kBlockNodes x kNodeWidth numbers.
-  Real* nodes(std::size_t g) { return nodes_.data() + g * kBlockNodes<dim> * kNodeWidth; }
-  const Real* nodes(std::size_t g) const { return nodes_.data() + g * kBlockNodes<dim> * kNodeWidth; }
+  /// Nodes of node block g: kBlockNodes x kNodeWidth x layers numbers, as in a tile. During a step, momenta become
+  /// velocities, and for FLIP in the second layer the velocity's change of the step.
+  Real* nodes(std::size_t g) { return nodes_.data() + g * block_size(); }
+  const Real* nodes(std::size_t g) const { return nodes_.data() + g * block_size(); }
 
-  /// Velocity change of the step at the nodes of block g, for FLIP; allocated on request.
-  Real* velocity_change(std::size_t g) { return velocity_change_.data() + g * kBlockNodes<dim> * kNodeWidth; }
-  const Real* velocity_change(std::size_t g) const {
-    return velocity_change_.data() + g * kBlockNodes<dim> * kNodeWidth;
-  }
   bool has_velocity_change() const { return keeps_velocity_change_; }
   void keep_velocity_change(bool keep) { keeps_velocity_change_ = keep; }
   int layers() const { return keeps_velocity_change_ ? 2 : 1; }
@@ -101,6 +97,7 @@ class Grid {
  private:
   using Tile = AlignedVector<Real>;
 
+  std::size_t block_size() const { return static_cast<std::size_t>(kBlockNodes<dim> * kNodeWidth * layers()); }
   Tile new_tile();
   void link_blocks();
 
@@ -111,7 +108,7 @@ class Grid {
   std::vector<std::uint64_t> particle_blocks_, node_blocks_, added_blocks_;
   std::vector<Tile> tiles_, added_tiles_, spare_tiles_;
   std::vector<std::array<std::int32_t, kReach<dim>>> upper_, lower_;
-  AlignedVector<Real> nodes_, velocity_change_;
+  AlignedVector<Real> nodes_;
 };
 
 }  // namespace firn
