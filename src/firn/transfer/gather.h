@@ -32,8 +32,7 @@ struct GatherReport {
 
 template <class Real, int dim>
 struct GatherTask {
-  const Real*
-      velocity;  ///< tile of v_i; with settings.flip > 0 of two layers, as in Grid::tile, the second v_i - v_i^n
+  const Real* velocity;  ///< tile of v_i; with settings.flip > 0 of two layers, the second one v_i - v_i^n
   double dx, dt;
   TransferSettings settings;
   Period<dim> period;
