@@ -73,7 +73,7 @@ struct NodeGroup {
   /// Node n is first + n in all of its numbers.
   static HWY_INLINE NodeGroup node_numbers(int first) {
     static constexpr auto kTable = [] {
-      std::array<Real, (kLargestNumber + 2)* kWidth> table = {};
+      std::array<Real, kTableSize> table = {};
       for (std::size_t k = 0; k < table.size(); ++k) table[k] = static_cast<Real>(static_cast<int>(k / kWidth) - 1);
       return table;
     }();
@@ -110,7 +110,8 @@ struct NodeGroup {
   }
 
  private:
-  static constexpr int kLargestNumber = 6;  ///< the last node of a cubic kernel's last group
+  static constexpr int kLargestNumber = 6;  // of the last node of a cubic kernel's last group
+  static constexpr std::size_t kTableSize = (kLargestNumber + 2) * kWidth;
 
   template <class E>
   static HWY_INLINE hn::Vec<E> repeat_layers(E e, const Real* HWY_RESTRICT from, const Real* HWY_RESTRICT second) {
